@@ -22,9 +22,9 @@ enum class LaserId : std::uint8_t { front, rear };
 struct LaserScan {
   Time time;  // of the measurement
   LaserId laser = LaserId::front;
-  double angle_min = 0.0;   // rad
-  double angle_step = 0.0;  // rad
-  float max_range = 0.0f;   // m
+  double angle_min = 0.0;     // rad
+  double angle_step = 0.0;    // rad
+  float max_range = 0.0f;     // m
   std::vector<float> ranges;  // m
 };
 
@@ -85,8 +85,8 @@ struct ExhibitTarget {
   std::optional<int> viewpoint;  // index; none: the nearest one that is free
 };
 struct PointTarget {
-  Point point;                   // map frame
-  std::optional<double> theta;   // heading wanted on arrival
+  Point point;                  // map frame
+  std::optional<double> theta;  // heading wanted on arrival
 };
 using Target = std::variant<ExhibitTarget, PointTarget>;
 
@@ -98,7 +98,7 @@ struct RequestVisit {
 struct CancelRequest {
   Ticket ticket = 0;
   RequestId id = 0;
-  std::string session;   // must be the requester's own, unless staff
+  std::string session;  // must be the requester's own, unless staff
   bool staff = false;
 };
 struct StartTour {

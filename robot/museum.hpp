@@ -40,15 +40,17 @@ struct Narration {
 };
 
 struct Exhibit {
-  std::string id;     // short, as in URLs: "beam-engine"
-  int number = 0;     // the same on map, list and wall
+  std::string id;  // short, as in URLs: "beam-engine"
+  int number = 0;  // the same on map, list and wall
   Text title;
-  Text summary;       // one sentence
-  Polygon outline;    // for drawing and for clicks
-  std::string icon;   // name of a line drawing, or empty
+  Text to;           // inside a sentence: "to the beam engine"; missing languages are made from the title
+  Text about;        // inside a sentence: "about the beam engine"
+  Text summary;      // one sentence
+  Polygon outline;   // for drawing and for clicks
+  std::string icon;  // name of a line drawing, or empty
   std::string picture;
-  std::vector<Viewpoint> viewpoints;    // at least one; the nearest free one is taken
-  std::vector<Narration> narrations;    // the first on arrival, the rest on "more"
+  std::vector<Viewpoint> viewpoints;  // at least one; the nearest free one is taken
+  std::vector<Narration> narrations;  // the first on arrival, the rest on "more"
 };
 
 struct Tour {
@@ -67,9 +69,9 @@ struct Area {
 struct WallCamera {
   std::string id;
   Text title;
-  Pose pose;            // where it hangs and looks
-  double height = 3.5;  // m
-  double tilt = -0.45;  // rad, down is negative
+  Pose pose;                   // where it hangs and looks
+  double height = 3.5;         // m
+  double tilt = -0.45;         // rad, down is negative
   double field_of_view = 1.2;  // rad, horizontal
 };
 
@@ -82,14 +84,14 @@ struct SpeedLimits {
 struct Museum {
   std::string id;
   Text title;
-  OccupancyGrid map;                 // visible to the laser
-  std::vector<Hazard> hazards;       // invisible
-  Polygon boundary;                  // operational area; empty: the whole map
+  OccupancyGrid map;            // visible to the laser
+  std::vector<Hazard> hazards;  // invisible
+  Polygon boundary;             // operational area; empty: the whole map
   std::vector<Exhibit> exhibits;
   std::vector<Tour> tours;
   std::vector<Area> areas;
   std::vector<WallCamera> cameras;
-  Pose home;                         // homing position when idle
+  Pose home;  // homing position when idle
   SpeedLimits speed;
 };
 

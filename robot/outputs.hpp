@@ -15,16 +15,16 @@ namespace robot {
 // ---- To the base ---------------------------------------------------------------------------------------------
 
 enum class GateReason : std::uint8_t {
-  none,            // the command passed as it was wanted
-  slowed,          // limited by speed limits, obstacles or hazards
-  stopped_by_hand, // Stop was pressed
+  none,             // the command passed as it was wanted
+  slowed,           // limited by speed limits, obstacles or hazards
+  stopped_by_hand,  // Stop was pressed
   obstacle,
   hazard,
   bumper,
   emergency_stop,
   sensor_stale,
   base_lost,
-  pose_unknown,    // hazards are near and the robot does not know well enough where it is
+  pose_unknown,  // hazards are near and the robot does not know well enough where it is
   motors_off,
 };
 
@@ -45,8 +45,8 @@ struct PoseEstimate {
   double sigma_position = 0.0;  // m, one standard deviation (larger axis)
   double sigma_theta = 0.0;     // rad
   int particles = 0;
-  bool localized = false;       // false: still searching, or lost
-  Twist twist;                  // measured
+  bool localized = false;  // false: still searching, or lost
+  Twist twist;             // measured
 };
 
 // A thinned picture of the belief, for the console.
@@ -61,10 +61,10 @@ struct ScanView {
   Time time;
   LaserId laser = LaserId::front;
   Pose map_from_laser;
-  double angle_min = 0.0;   // rad
-  double angle_step = 0.0;  // rad
-  std::vector<float> ranges;     // m, NaN: no return
-  std::vector<BeamKind> kinds;   // one a beam
+  double angle_min = 0.0;       // rad
+  double angle_step = 0.0;      // rad
+  std::vector<float> ranges;    // m, NaN: no return
+  std::vector<BeamKind> kinds;  // one a beam
 };
 
 struct PersonSeen {
@@ -81,22 +81,35 @@ struct Path {
 };
 
 enum class Activity : std::uint8_t {
-  starting,      // waiting for sensors
-  localizing,    // looking where it is
-  idle,          // standing at its homing position
-  homing,        // going there
-  driving,       // to a request's goal
-  waiting,       // people are in the way
-  explaining,    // at an exhibit
-  asking,        // "more, or move on?"
-  stopped,       // by hand
-  faulted,       // a device or the gate does not let it move
+  starting,    // waiting for sensors
+  localizing,  // looking where it is
+  idle,        // standing at its homing position
+  homing,      // going there
+  driving,     // to a request's goal
+  waiting,     // people are in the way
+  explaining,  // at an exhibit
+  asking,      // "more, or move on?"
+  stopped,     // by hand
+  faulted,     // a device or the gate does not let it move
 };
 
 // Why, beyond the activity itself.
 enum class Why : std::uint8_t {
-  none, requested, tour, nothing_to_do, people_in_the_way, way_blocked, crowded_slow, pressed_stop, laser_silent,
-  base_silent, bumped, emergency_stop, lost, hazard_near, motors_off,
+  none,
+  requested,
+  tour,
+  nothing_to_do,
+  people_in_the_way,
+  way_blocked,
+  crowded_slow,
+  pressed_stop,
+  laser_silent,
+  base_silent,
+  bumped,
+  emergency_stop,
+  lost,
+  hazard_near,
+  motors_off,
 };
 
 // What the robot does and why, with the facts that a sentence needs. Words are made of it per language.
@@ -104,11 +117,11 @@ struct Status {
   Activity activity = Activity::starting;
   Why why = Why::none;
   Mode mode = Mode::open;
-  std::string exhibit;             // id of the exhibit it is about, or empty
-  std::optional<Point> point;      // when the goal is a place on the map
-  std::string requester;           // name, or empty
-  std::string tour;                // id of the running tour, or empty
-  int stop_number = 0;             // of the tour, from 1
+  std::string exhibit;         // id of the exhibit it is about, or empty
+  std::optional<Point> point;  // when the goal is a place on the map
+  std::string requester;       // name, or empty
+  std::string tour;            // id of the running tour, or empty
+  int stop_number = 0;         // of the tour, from 1
   int stop_count = 0;
   double distance_to_go = 0.0;     // m
   double seconds_to_go = 0.0;      // s, of travel, explanation or waiting
@@ -120,9 +133,9 @@ struct Status {
 
 // The dynamic window as it was last judged, for the console: linear x angular samples.
 struct VelocitySpace {
-  std::vector<double> linear;    // m/s
-  std::vector<double> angular;   // rad/s
-  std::vector<float> score;      // linear-major; NaN: would hit, or not attainable
+  std::vector<double> linear;   // m/s
+  std::vector<double> angular;  // rad/s
+  std::vector<float> score;     // linear-major; NaN: would hit, or not attainable
   Twist chosen;
 };
 
@@ -135,7 +148,7 @@ struct Request {
   Requester requester;
   Target target;
   RequestState state = RequestState::pending;
-  std::string reason;        // in plain words, when cancelled or failed
+  std::string reason;  // in plain words, when cancelled or failed
   Time asked;
   int position = 0;          // in the order of visits from 1; 0 when it is no longer waiting
   double eta_seconds = 0.0;  // estimated time to arrival
@@ -147,8 +160,20 @@ struct RequestChanged {
 };
 
 enum class Refusal : std::uint8_t {
-  none, unknown_exhibit, unknown_viewpoint, unknown_tour, not_finite, off_the_map, inside_obstacle, in_hazard, unreachable,
-  queue_full, unknown_request, not_yours, already_over, nothing_to_answer,
+  none,
+  unknown_exhibit,
+  unknown_viewpoint,
+  unknown_tour,
+  not_finite,
+  off_the_map,
+  inside_obstacle,
+  in_hazard,
+  unreachable,
+  queue_full,
+  unknown_request,
+  not_yours,
+  already_over,
+  nothing_to_answer,
 };
 // The answer to anything that carried a ticket.
 struct Answer {
@@ -161,8 +186,8 @@ struct Answer {
 enum class Cue : std::uint8_t { narration, greeting, make_way, horn, arrived, farewell };
 struct Speech {
   Cue cue = Cue::narration;
-  std::string exhibit;   // narration: whose
-  int narration = 0;     // narration: which of its texts
+  std::string exhibit;  // narration: whose
+  int narration = 0;    // narration: which of its texts
   Text text;
   Seconds duration{0};
 };
@@ -184,7 +209,7 @@ struct Note {
   std::string text;
 };
 
-using Output = std::variant<WheelCommand, EnableMotors, PoseEstimate, Belief, ScanView, People, Path, Status, VelocitySpace,
-                            RequestChanged, Answer, Speech, VisitEnded, Note>;
+using Output = std::variant<WheelCommand, EnableMotors, PoseEstimate, Belief, ScanView, People, Path, Status,
+                            VelocitySpace, RequestChanged, Answer, Speech, VisitEnded, Note>;
 
 }  // namespace robot

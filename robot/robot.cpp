@@ -7,7 +7,8 @@ struct Robot::Parts {
   Config config;
 };
 
-Robot::Robot(Museum museum, Config config) : parts_(std::make_unique<Parts>(Parts{std::move(museum), std::move(config)})) {}
+Robot::Robot(Museum museum, Config config)
+    : parts_(std::make_unique<Parts>(Parts{std::move(museum), std::move(config)})) {}
 Robot::~Robot() = default;
 Robot::Robot(Robot&&) noexcept = default;
 Robot& Robot::operator=(Robot&&) noexcept = default;

@@ -28,7 +28,11 @@ constexpr Time from_seconds(double seconds) {
 }
 
 // Moves a time by a (fractional) number of seconds.
-constexpr Time operator+(Time time, Seconds step) { return time + std::chrono::duration_cast<RobotClock::duration>(step); }
-constexpr Time operator-(Time time, Seconds step) { return time - std::chrono::duration_cast<RobotClock::duration>(step); }
+constexpr Time operator+(Time time, Seconds step) {
+  return time + std::chrono::duration_cast<RobotClock::duration>(step);
+}
+constexpr Time operator-(Time time, Seconds step) {
+  return time - std::chrono::duration_cast<RobotClock::duration>(step);
+}
 
 }  // namespace robot

@@ -33,7 +33,7 @@ class Grid {
   int width() const { return width_; }
   int height() const { return height_; }
   double resolution() const { return resolution_; }  // m
-  Point origin() const { return origin_; }            // m
+  Point origin() const { return origin_; }           // m
   std::size_t size() const { return cells_.size(); }
   bool empty() const { return cells_.empty(); }
 

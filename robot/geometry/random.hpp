@@ -40,7 +40,9 @@ class Random {
   double uniform() { return static_cast<double>((*this)() >> 11) * 0x1.0p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   // Uniform in {0, .., count - 1}; count > 0.
-  std::uint64_t index(std::uint64_t count) { return static_cast<std::uint64_t>(uniform() * static_cast<double>(count)); }
+  std::uint64_t index(std::uint64_t count) {
+    return static_cast<std::uint64_t>(uniform() * static_cast<double>(count));
+  }
   // True with the given probability.
   bool chance(double probability) { return uniform() < probability; }
 
