@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything and runs every test.
+set -euo pipefail
+cd "$(dirname "$0")"
+docker/install.sh
+
+echo "== format"
+git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
+
+echo "== build"
+docker/build.sh release all
+
+echo "== core, protocols, server"
+ctest --preset release -j2
+
+echo "== pages"
+npm --prefix web run --silent check
+npm --prefix web test --silent
+npm --prefix web run --silent test:browser
+
+echo "== sanitizers"
+docker/build.sh asan all
+ctest --preset asan -j2 -E 'bench_runs|replay_test'
+docker/build.sh tsan docent server_devices_test server_stream_test server_api_test integration_test
+ctest --preset tsan -j2 -R 'server_|integration_test'
+
+echo "== lint"
+docker/lint.sh
