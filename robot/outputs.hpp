@@ -69,6 +69,8 @@ struct ScanView {
 
 struct PersonSeen {
   Point position;  // map frame
+  Point velocity;  // m/s, map frame; about zero while standing or just seen
+  int id = 0;      // the same person keeps it while being tracked
 };
 struct People {
   Time time;
