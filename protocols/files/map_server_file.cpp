@@ -190,11 +190,12 @@ robot::OccupancyGrid read_map_server(const std::filesystem::path& path) {
   const auto image = yaml.get<std::string>("image", "the picture's file name");
   const auto resolution = yaml.get<double>("resolution", "metres a pixel");
   if (!(resolution >= 1e-3 && resolution <= 10.0)) {
-    yaml.fail("resolution", "is not between 0.001 and 10 metres a pixel", "give metres a pixel, such as 0.05");
+    yaml.fail("resolution", "resolution is not between 0.001 and 10 metres a pixel",
+              "give metres a pixel, such as 0.05");
   }
   const auto origin = yaml.get<std::vector<double>>("origin", "[x, y, 0] in metres");
   if (origin.size() != 3 || !std::isfinite(origin[0]) || !std::isfinite(origin[1])) {
-    yaml.fail("origin", "must be three numbers", "give [x, y, 0], the lower-left corner in metres");
+    yaml.fail("origin", "origin is not three numbers", "give [x, y, 0], the lower-left corner in metres");
   }
   if (origin[2] != 0.0) yaml.fail("origin", "the map is turned", "turn the picture itself and give yaw 0");
   return read_pgm_map(path.parent_path() / image, resolution, {origin[0], origin[1]}, read_rules(yaml));
