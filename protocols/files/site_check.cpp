@@ -67,7 +67,7 @@ class PlaceCheck {
   std::vector<Problem>& problems_;
   std::string file_;
   double turning_radius_;
-  robot::CellMask room_to_turn_, reached_;
+  robot::Mask room_to_turn_, reached_;
 };
 
 // Drawings that lie beside the map: a sign that map and texts do not belong together.

@@ -10,7 +10,7 @@ namespace {
 
 // Calls f(cell) for the map's cells whose centres lie in the polygon's bounding box, widened by a margin in metres.
 template <typename F>
-void for_cells_near(const CellMask& grid, const std::vector<Point>& polygon, double margin, F f) {
+void for_cells_near(const Mask& grid, const std::vector<Point>& polygon, double margin, F f) {
   if (polygon.empty()) return;
   Point low = polygon.front(), high = polygon.front();
   for (const Point& p : polygon) {
@@ -30,16 +30,16 @@ void for_cells_near(const CellMask& grid, const std::vector<Point>& polygon, dou
   }
 }
 
-bool borders_on_open(const CellMask& open, Cell c) {
+bool borders_on_open(const Mask& open, Cell c) {
   return open.at_or({c.x - 1, c.y}, 0) || open.at_or({c.x + 1, c.y}, 0) || open.at_or({c.x, c.y - 1}, 0) ||
          open.at_or({c.x, c.y + 1}, 0);
 }
 
 }  // namespace
 
-CellMask open_cells(const OccupancyGrid& map, const std::vector<std::vector<Point>>& hazards,
-                    const std::vector<Point>& boundary) {
-  CellMask open(map.width(), map.height(), map.resolution(), map.origin(), 0);
+Mask open_cells(const OccupancyGrid& map, const std::vector<std::vector<Point>>& hazards,
+                const std::vector<Point>& boundary) {
+  Mask open(map.width(), map.height(), map.resolution(), map.origin(), 0);
   for (std::size_t i = 0; i < map.size(); ++i) open.cells()[i] = is_free(map.cells()[i]) ? 1 : 0;
   for (const auto& hazard : hazards) {
     const double margin = 0.5 * map.resolution();
@@ -55,8 +55,8 @@ CellMask open_cells(const OccupancyGrid& map, const std::vector<std::vector<Poin
   return open;
 }
 
-CellMask cells_clear_for(const CellMask& open, double radius) {
-  CellMask clear = open;
+Mask cells_clear_for(const Mask& open, double radius) {
+  Mask clear = open;
   const int reach = static_cast<int>(std::floor(radius / open.resolution()));
   const double limit = std::pow(radius / open.resolution(), 2);
   // One ring of cells round the map counts as blocked: nobody knows what is there.
@@ -74,8 +74,8 @@ CellMask cells_clear_for(const CellMask& open, double radius) {
   return clear;
 }
 
-CellMask reachable_cells(const CellMask& clear, Point from) {
-  CellMask reached(clear.width(), clear.height(), clear.resolution(), clear.origin(), 0);
+Mask reachable_cells(const Mask& clear, Point from) {
+  Mask reached(clear.width(), clear.height(), clear.resolution(), clear.origin(), 0);
   const Cell start = clear.cell(from);
   if (!clear.at_or(start, 0)) return reached;
   std::vector<Cell> open = {start};

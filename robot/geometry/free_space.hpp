@@ -1,27 +1,24 @@
 // Where a round body can be, and where it can get to from a place: the yes-or-no view of a map with its hazards.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
+#include "robot/geometry/distance_field.hpp"
 #include "robot/geometry/grid.hpp"
 #include "robot/geometry/pose.hpp"
 
 namespace robot {
 
-// 1 or 0 for each cell of a map.
-using CellMask = Grid<std::uint8_t>;
-
 // Cells that are known to be free, outside of all hazards and inside the boundary (empty: everywhere). A hazard covers
 // every cell that its area or its edge touches about the cell's centre.
-CellMask open_cells(const OccupancyGrid& map, const std::vector<std::vector<Point>>& hazards,
-                    const std::vector<Point>& boundary);
+Mask open_cells(const OccupancyGrid& map, const std::vector<std::vector<Point>>& hazards,
+                const std::vector<Point>& boundary);
 
 // Cells in which the centre of a disc of this radius (m) can stand while all of it stays on open cells.
-CellMask cells_clear_for(const CellMask& open, double radius);
+Mask cells_clear_for(const Mask& open, double radius);
 
 // Cells that can be reached from the point over clear ones, 8-connected, never squeezing diagonally between two blocked
 // cells. Nothing when the point itself is not clear.
-CellMask reachable_cells(const CellMask& clear, Point from);
+Mask reachable_cells(const Mask& clear, Point from);
 
 }  // namespace robot

@@ -22,7 +22,7 @@ const auto rooms = draw_world(0.1, {"#####################",
                                     "#####################"});
 // clang-format on
 
-bool reaches(const CellMask& open, double radius, Point from, Point to) {
+bool reaches(const Mask& open, double radius, Point from, Point to) {
   const auto mask = reachable_cells(cells_clear_for(open, radius), from);
   return mask.at_or(mask.cell(to), 0) != 0;
 }
