@@ -139,8 +139,8 @@ class SiteReader {
   }
 
   void read_exhibit(const toml::table& table) {
-    read_.only_keys(table,
-                    {"id", "number", "title", "summary", "outline", "icon", "picture", "viewpoint", "narration"});
+    read_.only_keys(table, {"id", "number", "title", "to", "about", "summary", "outline", "icon", "picture",
+                            "viewpoint", "narration"});
     robot::Exhibit exhibit;
     exhibit.id = read_.id(table, "exhibit");
     exhibit.number = static_cast<int>(read_.number(table, "number", {1, 9999}));
@@ -149,6 +149,8 @@ class SiteReader {
                      "number each exhibit apart");
     }
     exhibit.title = read_.text(table, "title");
+    exhibit.to = read_.text(table, "to", false);
+    exhibit.about = read_.text(table, "about", false);
     exhibit.summary = read_.text(table, "summary");
     exhibit.outline = read_.polygon(table, "outline");
     exhibit.icon = read_.string(table, "icon", "");
