@@ -7,6 +7,7 @@ namespace robot::simulation {
 namespace {
 
 constexpr double loop_time = 0.06;  // s, of the velocity loops
+constexpr double least = 1e-4;      // m/s or rad/s that friction swallows
 constexpr double track = 0.40;      // m between the wheels
 
 // One axis of the velocity loop: speeding up and slowing down have their own limits; a change of sign brakes first.
@@ -15,6 +16,7 @@ double pursue(double now, double wanted, double speed_up, double slow_down, doub
   const double limit = braking ? slow_down : speed_up;
   const double rate = std::clamp((wanted - now) / loop_time, -limit, limit);
   const double next = now + rate * dt;
+  if (std::abs(wanted - next) < least) return wanted;
   return braking && now * next < 0.0 ? 0.0 : next;
 }
 

@@ -24,7 +24,7 @@ World::World(const Museum& museum, const Body& body, const WorldConfig& config, 
       walls_(museum_.map),
       drive_(body.drive, config.drive, Random(seed * 4 + 1)),
       sensors_(museum_, body, config.sensors, Random(seed * 4 + 2)),
-      crowd_(museum_, walls_, config.visitors, Random(seed * 4 + 3)),
+      crowd_(museum_, config.visitors, Random(seed * 4 + 3)),
       pose_(config.start.value_or(museum.home)),
       next_rear_(Time{} + Seconds(0.5 * config.laser_period.count())),
       battery_(config.battery_fraction) {}
