@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <boost/asio/ip/v6_only.hpp>
+
 #include "server/http/connection.hpp"
 
 namespace server {
