@@ -1,0 +1,66 @@
+// What the links to real (or simulated) devices have in common: they own a serial line, keep it alive, and say what
+// happens on it as events. A link belongs to one executor; everything is called and calls back there.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robot/inputs.hpp"
+
+namespace devices {
+
+using namespace std::chrono_literals;
+using Instant = std::chrono::steady_clock::time_point;
+using Duration = std::chrono::steady_clock::duration;
+
+// The run's time line, read when bytes arrive.
+using Clock = std::function<robot::Time()>;
+using EventSink = std::function<void(robot::Event)>;
+
+// How long until the next attempt at a dead line: soon at first, then ever more rarely.
+class Backoff {
+ public:
+  Duration next() { return std::exchange(wait_, std::min<Duration>(2 * wait_, 1s)); }
+  void reset() { wait_ = 50ms; }
+
+ private:
+  Duration wait_ = 50ms;
+};
+
+// Three missed periods; never less than what a busy machine may be late by.
+inline Duration silence_limit(std::chrono::duration<double> period) {
+  return std::max<Duration>(250ms, std::chrono::duration_cast<Duration>(3.0 * period));
+}
+
+// Rates to try in this order, each once; zeros left out.
+inline std::vector<int> rates_to_try(std::initializer_list<int> rates) {
+  std::vector<int> out;
+  for (const int rate : rates) {
+    if (rate != 0 && std::find(out.begin(), out.end(), rate) == out.end()) out.push_back(rate);
+  }
+  return out;
+}
+
+// How long `bytes` take on a line of `baud`, 8N1.
+inline std::chrono::duration<double> transmission_time(std::size_t bytes, int baud) {
+  return std::chrono::duration<double>(10.0 * static_cast<double>(bytes) / baud);
+}
+
+// The health of a line since it was first opened.
+struct LineStatistics {
+  std::uint64_t frames = 0;
+  std::uint64_t bad_checksums = 0;
+  std::uint64_t skipped_bytes = 0;
+  std::uint64_t connections = 0;  // times that the device came (back)
+  std::string identity;           // what the device calls itself
+  int baud = 0;
+  bool connected = false;
+};
+
+}  // namespace devices
