@@ -37,9 +37,12 @@ class SiteReader {
       site_.problems.push_back(error.problem());
       return;
     }
-    read_.only_keys(document_, {"id", "title", "languages", "map", "home", "boundary", "speed", "hazard", "area",
-                                "camera", "exhibit", "tour"});
+    read_.only_keys(document_, {"id", "title", "languages", "map", "home", "boundary", "visitors", "speed", "hazard",
+                                "area", "camera", "exhibit", "tour"});
     read_head();
+    if (document_.get("visitors")) {
+      museum().visitors = static_cast<int>(read_.number(document_, "visitors", {0.0, 2000.0}, museum().visitors));
+    }
     read_speed();
     for (const auto* table : read_.tables(document_, "hazard")) read_hazard(*table);
     for (const auto* table : read_.tables(document_, "area")) read_area(*table);
