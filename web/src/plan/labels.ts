@@ -1,0 +1,77 @@
+// Where names stand on the plan: below their exhibit when there is room, else above or beside; a name that would cover another one
+// is left out until there is room (its number stays).
+import type { Point } from "../wire/types";
+
+export interface Anchor {
+  id: string;
+  lines: string[];
+  width: number; // px, of the widest line
+  lineHeight: number; // px
+  at: Point; // px, middle of the thing named
+  half: Point; // px, half its size
+  must: boolean; // to be shown whatever it covers
+}
+export interface Placed {
+  id: string;
+  lines: string[];
+  x: number; // px, middle
+  y: number; // px, baseline of the first line
+  align: "center" | "left" | "right";
+}
+export interface Box {
+  x0: number;
+  y0: number;
+  x1: number;
+  y1: number;
+}
+
+const gap = 4; // px between the thing and its name
+
+// `taken`: boxes that names should not cover. `busy` 0..1: how much wall lies under a box.
+export function placeLabels(anchors: Anchor[], taken: Box[], busy: (box: Box) => number): Placed[] {
+  const out: Placed[] = [];
+  const boxes = [...taken];
+  for (const anchor of [...anchors].sort((a, b) => Number(b.must) - Number(a.must))) {
+    let best: { placed: Placed; box: Box } | null = null, bestCost = Infinity;
+    candidates(anchor).forEach((candidate, rank) => {
+      const cover = boxes.reduce((sum, box) => sum + overlap(candidate.box, box), 0) / area(candidate.box);
+      const cost = cover * 4 + busy(candidate.box) * 2 + rank * 0.12;
+      if (cost < bestCost) (best = candidate), (bestCost = cost);
+    });
+    if (!best || (bestCost > 1.1 && !anchor.must)) continue;
+    const chosen = best as { placed: Placed; box: Box };
+    out.push(chosen.placed);
+    boxes.push(chosen.box);
+  }
+  return out;
+}
+
+function candidates(a: Anchor): { placed: Placed; box: Box }[] {
+  const h = a.lines.length * a.lineHeight, [x, y] = a.at, [hx, hy] = a.half;
+  const below = y + hy + gap, above = y - hy - gap - h, right = x + hx + gap + 2, left = x - hx - gap - 2;
+  const make = (align: Placed["align"], lx: number, top: number) => {
+    const x0 = align === "center" ? lx - a.width / 2 : align === "left" ? lx : lx - a.width;
+    return {
+      placed: { id: a.id, lines: a.lines, x: lx, y: top + a.lineHeight * 0.8, align },
+      box: { x0, y0: top, x1: x0 + a.width, y1: top + h },
+    };
+  };
+  return [make("center", x, below), make("center", x, above), make("left", right, y - h / 2), make("right", left, y - h / 2)];
+}
+function area(b: Box): number {
+  return Math.max(1, (b.x1 - b.x0) * (b.y1 - b.y0));
+}
+function overlap(a: Box, b: Box): number {
+  return Math.max(0, Math.min(a.x1, b.x1) - Math.max(a.x0, b.x0)) * Math.max(0, Math.min(a.y1, b.y1) - Math.max(a.y0, b.y0));
+}
+
+// Long names go on two lines, broken at the space or hyphen nearest the middle.
+export function breakName(name: string, measure: (text: string) => number, limit: number): string[] {
+  if (measure(name) <= limit) return [name];
+  let best = -1;
+  for (let k = 1; k < name.length - 1; k++) {
+    const c = name[k - 1];
+    if ((c === " " || c === "-") && Math.abs(k - name.length / 2) < Math.abs(best - name.length / 2)) best = k;
+  }
+  return best < 0 ? [name] : [name.slice(0, best).trimEnd(), name.slice(best)];
+}
