@@ -1,6 +1,7 @@
 #include "robot/localization/localizer.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <optional>
 
@@ -8,77 +9,290 @@
 #include "robot/localization/beams.hpp"
 
 namespace robot {
+namespace {
 
-double Estimate::sigma_position() const {
+constexpr double seed_sigma_position = 0.08, seed_sigma_theta = 0.03;  // of a place that a search found, m and rad
+
+double larger_axis(const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix2d block = covariance.topLeftCorner<2, 2>();
   const auto values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(block, Eigen::EigenvaluesOnly).eigenvalues();
   return std::sqrt(std::max(0.0, values[1]));
 }
-double Estimate::sigma_theta() const { return std::sqrt(std::max(0.0, covariance(2, 2))); }
+
+double heading_sigma(const Eigen::Matrix3d& covariance) { return std::sqrt(std::max(0.0, covariance(2, 2))); }
+
+// What is left unsaid by samples that are few and by a map that is not perfect.
+Eigen::Matrix3d with_floor(Eigen::Matrix3d covariance, double metres, double angle) {
+  covariance.diagonal() += Eigen::Vector3d(metres * metres, metres * metres, angle * angle);
+  return covariance;
+}
+
+}  // namespace
+
+double Estimate::sigma_position() const { return larger_axis(covariance); }
+double Estimate::sigma_theta() const { return heading_sigma(covariance); }
 
 struct Localizer::Parts {
-  Parts(const OccupancyGrid& grid, LocalizerConfig c, std::uint64_t seed)
-      : config(c), field(grid, c.likelihood), caster(grid), random(seed), filter(c.particles, random.split()) {}
+  Parts(const OccupancyGrid& grid, const LocalizerConfig& c, std::uint64_t seed)
+      : config(c),
+        map(grid),
+        field(map, c.likelihood, c.surface_offset),
+        caster(map),
+        reader(map, caster, field, c.reading),
+        search(map, caster, field, c.search),
+        judge(c.lost),
+        random(seed),
+        filter(c.particles, random.split()) {}
+  Parts(const Parts&) = delete;  // parts refer to each other
+
+  enum class Phase { blind, tracking };
+  // The last scan of each laser: what a search looks at.
+  struct Glance {
+    LaserId laser;
+    Beams beams;
+    Pose odom_from_base;
+    Time time;
+  };
 
   LocalizerConfig config;
+  OccupancyGrid map;
   LikelihoodField field;
   RayCaster caster;
+  BeamReader reader;
+  GlobalSearch search;
+  LostJudge judge;
   Random random;
   MonteCarlo filter;
+
+  Phase phase = Phase::blind;
   std::optional<Pose> odom_now;   // newest odometry
-  std::optional<Pose> odom_then;  // odometry at the belief's time
+  std::optional<Pose> odom_then;  // odometry at the samples' time
   MotionStep since;               // way and turns since then
   Time weighed_at;
-  Pose mean;  // at the belief's time
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  int weighed = 0;
+  Cluster best;  // heaviest lump at the samples' time
   int modes = 0;
-  double mass = 0.0;
+  bool localized = false;
 
-  void summarize() {
-    const auto clusters = filter.clusters();
-    modes = 0;
-    for (const auto& c : clusters) modes += c.mass > 0.05 ? 1 : 0;
-    if (clusters.empty()) return;
-    mean = clusters[0].mean;
-    covariance = clusters[0].covariance;
-    mass = clusters[0].mass;
-  }
+  Pose pose;       // refined estimate ...
+  Pose pose_odom;  // ... and the odometry it belongs to
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double offset = 0.0;  // m, learned
 
-  ScanReading read(const LaserScan& scan, const Pose& map_from_laser) const {
-    ScanReading reading{map_from_laser, {}, {}, false};
-    for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-      const double angle = map_from_laser.theta + scan.angle_min + static_cast<double>(i) * scan.angle_step;
-      const auto expected = static_cast<float>(caster.cast(map_from_laser.position(), angle, scan.max_range));
-      const float range = scan.ranges[i];
-      reading.expected.push_back(expected);
-      if (!is_return(range, scan.max_range)) {
-        reading.kinds.push_back(BeamKind::no_return);
-      } else if (range < expected - 0.3f) {
-        reading.kinds.push_back(BeamKind::person);
-      } else {
-        reading.kinds.push_back(range > expected + 0.3f ? BeamKind::unexpected_far : BeamKind::map);
-      }
-    }
-    return reading;
+  std::vector<Glance> glances;
+  int scans_since_wish = 0;  // scans since a search has been wanted
+  bool search_wanted = false;
+  Pose search_odom;
+  Time searched_at;
+
+  void forget_motion(const Pose& odom) {
+    odom_then = odom;
+    since = {};
   }
+  void advance(const Pose& odom);
+  void summarize();
+  void weigh(const LaserScan& scan, const Pose& base_from_laser, bool resting);
+  std::vector<Point> trusted_ends(const LaserScan& scan, const Pose& base_from_laser);
+  void refine(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom);
+  void learn_offset(const ScanMatch& match);
+  void judge_state(const ScanReading& reading);
+  void glance(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom);
+  Look look_from(const Pose& odom) const;
+  void adopt_search();
+  ScanReading read_blindly(const LaserScan& scan, const Pose& map_from_laser) const;
 };
 
+// Brings the samples up to an odometry.
+void Localizer::Parts::advance(const Pose& odom) {
+  since.moved = relative(*odom_then, odom);
+  filter.predict(since, config.motion);
+  forget_motion(odom);
+}
+
+void Localizer::Parts::summarize() {
+  const auto clusters = filter.clusters();
+  modes =
+      static_cast<int>(std::count_if(clusters.begin(), clusters.end(), [](const auto& c) { return c.mass > 0.05; }));
+  best = clusters.empty() ? Cluster{} : clusters.front();
+  pose = best.mean;
+  pose_odom = odom_then.value_or(Pose{});
+  covariance = best.covariance;
+}
+
+// The beams to weigh the samples by: thinned, a different comb each time, and without those that surely met somebody.
+std::vector<Point> Localizer::Parts::trusted_ends(const LaserScan& scan, const Pose& base_from_laser) {
+  const int stride = std::max(1, (static_cast<int>(scan.ranges.size()) + config.beams - 1) / config.beams);
+  const Beams beams = beams_of(scan, base_from_laser, weighed % stride, stride);
+  const std::vector<Pose> belief = filter.draw(config.filter_samples, random.uniform());
+  std::vector<Point> ends;
+  for (const Beam& beam : beams.beams) {
+    const bool untested = random.chance(config.unfiltered_share);
+    if (untested || !reader.is_short(beam, beams.origin, belief)) ends.push_back(beam.end);
+  }
+  return ends;
+}
+
+void Localizer::Parts::weigh(const LaserScan& scan, const Pose& base_from_laser, bool resting) {
+  const std::vector<Point> ends = trusted_ends(scan, base_from_laser);
+  const bool searching = !localized || larger_axis(best.covariance) > 0.3;
+  field.set_hit_sigma(config.likelihood.hit_sigma * (searching ? 2.0 : 1.0));
+  const Particles& particles = filter.particles();
+  std::vector<float> log_likelihood(particles.size());
+  field.weigh(particles.x, particles.y, particles.theta, ends, log_likelihood);
+  if (resting) {
+    for (auto& value : log_likelihood) value *= static_cast<float>(config.rest_temper);
+  }
+  filter.weigh(log_likelihood);
+  summarize();
+  filter.resample_when_uneven();
+  weighed_at = scan.time;
+  ++weighed;
+}
+
+// The estimate between the samples: the scan aligned with the map, held by the belief.
+void Localizer::Parts::refine(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom) {
+  const Pose predicted = best.mean * relative(*odom_then, odom);
+  const Eigen::Matrix3d prior = with_floor(best.covariance, 0.01, 0.005);
+  pose = predicted;
+  pose_odom = odom;
+  covariance = prior;
+  if (larger_axis(best.covariance) > 0.5) return;
+  const int stride = std::max(1, (static_cast<int>(scan.ranges.size()) + 180) / 181);
+  Beams beams = beams_of(scan, base_from_laser, 0, stride);
+  const ScanReading reading = reader.read(scan, predicted * base_from_laser, larger_axis(prior), heading_sigma(prior));
+  std::erase_if(beams.beams,
+                [&](const Beam& beam) { return reading.kinds[static_cast<std::size_t>(beam.index)] != BeamKind::map; });
+  if (beams.beams.size() < 10) return;
+  const ScanMatch match =
+      match_scan(field.distances(), field.surface_offset(), beams.beams, predicted, prior, config.match);
+  const Eigen::Vector3d off(match.pose.x - predicted.x, match.pose.y - predicted.y,
+                            wrap_angle(match.pose.theta - predicted.theta));
+  if (match.fit < 0.3 || off.dot(prior.inverse() * off) > 16.0) return;
+  pose = match.pose;
+  covariance = with_floor(match.covariance, 0.01, 0.003);
+  learn_offset(match);
+}
+
+void Localizer::Parts::learn_offset(const ScanMatch& match) {
+  if (!config.learn_surface_offset || !localized || match.fit < 0.6 || match.beams < 30.0) return;
+  offset = std::clamp(offset + 0.02 * match.residual, 0.0, map.resolution());
+  if (std::abs(offset - field.surface_offset()) > 0.001) field.set_surface_offset(offset);
+}
+
+void Localizer::Parts::judge_state(const ScanReading& reading) {
+  judge.observe(count_kinds(reading.kinds));
+  const double metres = larger_axis(best.covariance), angle = heading_sigma(best.covariance);
+  if (localized) {
+    localized = !judge.lost() && best.mass > 0.7 && metres < 0.8;
+  } else {
+    localized = judge.confirmed() && best.mass > 0.95 && metres < 0.4 && angle < radians(15);
+  }
+}
+
+void Localizer::Parts::glance(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom) {
+  std::erase_if(glances, [&](const Glance& g) { return g.laser == scan.laser; });
+  glances.push_back({scan.laser, beams_of(scan, base_from_laser), odom, scan.time});
+  const bool due = phase == Phase::blind || scan.time - searched_at >= config.search_again;
+  if (!localized && due && !search.running()) search_wanted = true;
+  scans_since_wish = search_wanted ? scans_since_wish + 1 : 0;
+}
+
+// All lasers' last scans as one look round from the given odometry; those too far back in way are left out.
+Look Localizer::Parts::look_from(const Pose& odom) const {
+  Look look;
+  for (const Glance& g : glances) {
+    const Pose base_from_then = relative(odom, g.odom_from_base);
+    if (norm(base_from_then.position()) > 0.5 || std::abs(base_from_then.theta) > 0.5) continue;
+    Beams beams = g.beams;
+    beams.origin = base_from_then * beams.origin;
+    for (Beam& beam : beams.beams) {
+      beam.end = base_from_then * beam.end;
+      beam.direction = (base_from_then * beam.direction) - base_from_then.position();
+    }
+    look.lasers.push_back(std::move(beams));
+  }
+  return look;
+}
+
+// A search has ended: its places become hypotheses beside what is still believed (mixture MCL: Thrun et al. 2001).
+void Localizer::Parts::adopt_search() {
+  const auto& peaks = search.peaks();
+  if (peaks.empty() || !odom_now) return;
+  std::vector<Seed> seeds;
+  double best_score = peaks.front().score;
+  if (phase == Phase::tracking) {
+    advance(*odom_now);
+    summarize();
+    const Pose then = best.mean * relative(*odom_now, search_odom);
+    const Peak current = judge_place(caster, field, search.look(), then);
+    if (current.score > best_score - 1.0 && best.mass > 0.5) return;  // nothing better anywhere
+    best_score = std::max(best_score, current.score);
+    seeds.push_back({best.mean, std::min(0.3, larger_axis(best.covariance) + 0.02),
+                     heading_sigma(best.covariance) + 0.01, std::max(0.02, std::exp(current.score - best_score))});
+  }
+  for (const Peak& peak : peaks) {
+    if (seeds.size() >= 40) break;
+    seeds.push_back({peak.pose * relative(search_odom, *odom_now), seed_sigma_position, seed_sigma_theta,
+                     std::max(1e-3, std::exp(peak.score - best_score))});
+  }
+  filter.start(seeds);
+  forget_motion(*odom_now);
+  summarize();
+  judge.reset(1.0);
+  localized = false;
+  phase = Phase::tracking;
+}
+
+// Where nothing is known nothing is surprising.
+ScanReading Localizer::Parts::read_blindly(const LaserScan& scan, const Pose& map_from_laser) const {
+  ScanReading reading{map_from_laser, {}, {}, false};
+  for (const float range : scan.ranges) {
+    const bool met = is_return(range, scan.max_range);
+    reading.kinds.push_back(met ? BeamKind::map : BeamKind::no_return);
+    reading.expected.push_back(met ? range : scan.max_range);
+  }
+  return reading;
+}
+
 Localizer::Localizer(const OccupancyGrid& map, LocalizerConfig config, std::uint64_t seed)
-    : parts_(std::make_unique<Parts>(map, config, seed)) {}
+    : parts_(std::make_unique<Parts>(map, config, seed)) {
+  parts_->offset = config.surface_offset;
+}
 Localizer::~Localizer() = default;
 Localizer::Localizer(Localizer&&) noexcept = default;
 Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 
 void Localizer::start_at(const Pose& map_from_base, double sigma_position, double sigma_theta) {
   if (!is_finite(map_from_base)) return;
+  Parts& p = *parts_;
   const Seed seed{map_from_base, sigma_position, sigma_theta, 1.0};
-  parts_->filter.start({&seed, 1});
-  parts_->odom_then = parts_->odom_now;
-  parts_->since = {};
-  parts_->summarize();
+  p.filter.start({&seed, 1});
+  if (p.odom_now) p.forget_motion(*p.odom_now);
+  p.phase = Parts::Phase::tracking;
+  p.judge.reset(p.config.lost.found_below);
+  p.localized = sigma_position < 0.8;
+  p.search_wanted = false;
+  p.summarize();
 }
 
-void Localizer::start_globally() {}
+void Localizer::start_globally() {
+  Parts& p = *parts_;
+  std::vector<Pose> everywhere;
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < p.map.size(); ++i) {
+    if (is_free(p.map.cells()[i])) open.push_back(i);
+  }
+  for (int i = 0; i < p.config.particles.max_particles && !open.empty(); ++i) {
+    const Point at = p.map.center(p.map.cell_at(open[p.random.index(open.size())]));
+    everywhere.push_back({at.x, at.y, p.random.uniform(-pi, pi)});
+  }
+  p.filter.start_from(everywhere);
+  if (p.odom_now) p.forget_motion(*p.odom_now);
+  p.phase = Parts::Phase::blind;
+  p.localized = false;
+  p.glances.clear();
+  p.summarize();
+}
 
 void Localizer::move(const Pose& odom_from_base, Time) {
   if (!is_finite(odom_from_base)) return;
@@ -89,53 +303,73 @@ void Localizer::move(const Pose& odom_from_base, Time) {
     p.since.turned += std::abs(step.theta);
   }
   p.odom_now = odom_from_base;
-  if (!p.odom_then) p.odom_then = odom_from_base;
+  if (!p.odom_then) {
+    p.odom_then = odom_from_base;
+    p.pose_odom = odom_from_base;
+  }
 }
 
 ScanReading Localizer::update(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom_from_base) {
   Parts& p = *parts_;
-  if (!p.odom_then) move(odom_from_base, scan.time);
-  p.since.moved = relative(*p.odom_then, odom_from_base);
-  const bool moved = norm(p.since.moved.position()) > p.config.update_after_metres ||
-                     std::abs(p.since.moved.theta) > p.config.update_after_turn;
-  bool weighed = false;
-  if (moved || scan.time - p.weighed_at >= p.config.update_after_rest) {
-    p.filter.predict(p.since, p.config.motion);
-    const int stride = std::max(1, static_cast<int>(scan.ranges.size()) / p.config.beams);
-    std::vector<Point> ends;
-    for (const auto& beam : beams_of(scan, base_from_laser, 0, stride).beams) ends.push_back(beam.end);
-    const Particles& particles = p.filter.particles();
-    std::vector<float> log_likelihood(particles.size());
-    p.field.weigh(particles.x, particles.y, particles.theta, ends, log_likelihood);
-    p.filter.weigh(log_likelihood);
-    p.summarize();
-    p.filter.resample_when_uneven();
-    p.odom_then = odom_from_base;
-    p.since = {};
-    p.weighed_at = scan.time;
-    weighed = true;
+  const Pose odom = is_finite(odom_from_base) ? odom_from_base : p.odom_now.value_or(Pose{});
+  if (!p.odom_then) move(odom, scan.time);
+  p.glance(scan, base_from_laser, odom);
+  if (p.phase == Parts::Phase::blind)
+    return p.read_blindly(scan, p.pose * relative(p.pose_odom, odom) * base_from_laser);
+  const Pose moved = relative(*p.odom_then, odom);
+  const bool resting =
+      norm(moved.position()) < p.config.update_after_metres && std::abs(moved.theta) < p.config.update_after_turn;
+  // While the place is in doubt, patience at rest would only cost time.
+  const Seconds patience = p.localized ? p.config.update_after_rest : 0.2 * p.config.update_after_rest;
+  const bool due = !resting || scan.time - p.weighed_at >= patience;
+  if (due) {
+    p.advance(odom);
+    p.weigh(scan, base_from_laser, resting);
   }
-  const Pose map_from_base = p.mean * relative(*p.odom_then, odom_from_base);
-  ScanReading reading = p.read(scan, map_from_base * base_from_laser);
-  reading.weighed = weighed;
+  p.refine(scan, base_from_laser, odom);
+  ScanReading reading =
+      p.reader.read(scan, p.pose * base_from_laser, larger_axis(p.covariance), heading_sigma(p.covariance));
+  reading.weighed = due;
+  if (due) p.judge_state(reading);
   return reading;
 }
 
-bool Localizer::work(int) { return false; }
+bool Localizer::work(int units) {
+  Parts& p = *parts_;
+  if (!p.search.running()) {
+    // The second scan is the other laser's, or the same one's when there is only one.
+    if (!p.search_wanted || p.scans_since_wish < 2 || !p.odom_now) return false;
+    p.search_wanted = false;
+    p.searched_at = p.glances.back().time;
+    p.search_odom = p.glances.back().odom_from_base;
+    p.search.start(p.look_from(p.search_odom));
+  }
+  if (p.search.step(units)) return true;
+  p.adopt_search();
+  return false;
+}
 
 Estimate Localizer::estimate() const {
   const Parts& p = *parts_;
   Estimate e;
-  e.map_from_base = p.odom_now && p.odom_then ? p.mean * relative(*p.odom_then, *p.odom_now) : p.mean;
+  e.map_from_base = p.odom_now ? p.pose * relative(p.pose_odom, *p.odom_now) : p.pose;
   e.covariance = p.covariance;
+  e.localized = p.localized;
+  e.lost = p.judge.lost();
   e.particles = static_cast<int>(p.filter.particles().size());
   e.modes = p.modes;
-  e.localized = p.mass > 0.9;
   return e;
 }
 
 std::vector<Pose> Localizer::samples(int at_most) const {
-  return parts_->filter.draw(std::min(at_most, static_cast<int>(parts_->filter.particles().size())));
+  const Parts& p = *parts_;
+  const int count = std::min(at_most, static_cast<int>(p.filter.particles().size()));
+  std::vector<Pose> poses = p.filter.draw(count);
+  if (p.odom_now && p.odom_then) {
+    const Pose step = relative(*p.odom_then, *p.odom_now);
+    for (Pose& pose : poses) pose = pose * step;
+  }
+  return poses;
 }
 
 }  // namespace robot

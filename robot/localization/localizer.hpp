@@ -11,10 +11,13 @@
 #include "robot/geometry/grid.hpp"
 #include "robot/geometry/pose.hpp"
 #include "robot/inputs.hpp"
+#include "robot/localization/beam_reading.hpp"
+#include "robot/localization/global_search.hpp"
 #include "robot/localization/likelihood_field.hpp"
+#include "robot/localization/lost.hpp"
 #include "robot/localization/monte_carlo.hpp"
 #include "robot/localization/motion_model.hpp"
-#include "robot/outputs.hpp"
+#include "robot/localization/scan_match.hpp"
 
 namespace robot {
 
@@ -22,18 +25,20 @@ struct LocalizerConfig {
   MonteCarloConfig particles;
   MotionNoise motion;
   LikelihoodConfig likelihood;
+  BeamReadingConfig reading;
+  ScanMatchConfig match;
+  GlobalSearchConfig search;
+  LostConfig lost;
   int beams = 60;                    // a scan is thinned to this many for weighing
   double update_after_metres = 0.1;  // of way since the samples were last weighed ...
   double update_after_turn = 0.05;   // rad ... or of turning ...
   Seconds update_after_rest{1.0};    // ... or of standing still
-};
-
-// What a scan meant, seen from the pose it was understood at.
-struct ScanReading {
-  Pose map_from_laser;
-  std::vector<BeamKind> kinds;  // one a beam of the scan
-  std::vector<float> expected;  // m, one a beam: range to the map's first surface
-  bool weighed = false;         // the samples were weighed by this scan
+  double rest_temper = 0.3;          // what a scan counts at rest: it repeats what the last one said
+  double unfiltered_share = 0.1;     // of beams that pass the distance filter untested: evidence against a wrong belief
+  int filter_samples = 16;           // of the belief, that the distance filter asks
+  double surface_offset = 0.0;       // m, see LikelihoodField; where tracking starts from ...
+  bool learn_surface_offset = true;  // ... when it may be learned while localized
+  Seconds search_again{5.0};         // while lost or not yet localized
 };
 
 struct Estimate {
