@@ -22,13 +22,13 @@ namespace robot::simulation {
 
 struct WorldConfig {
   int visitors = 100;
-  std::optional<Pose> start;      // map_from_base; none: the museum's home
+  std::optional<Pose> start{};    // map_from_base; none: the museum's home
   Seconds base_period{0.05};      // odometry, state, sonars
   Seconds laser_period{0.05};     // each laser; zero: no scans among the events, devices ask for them
   double battery_fraction = 1.0;  // at the start
   Seconds watchdog{2.0};          // the base stops when no command comes for this long
-  DriveNoise drive;
-  SensorNoise sensors;
+  DriveNoise drive{};
+  SensorNoise sensors{};
 };
 
 // What can be seen at a moment, by value: pictures are made of it, on any thread.

@@ -1,0 +1,130 @@
+#include "server/tools/simulate_tool.hpp"
+
+#include <chrono>
+#include <memory>
+
+#include "protocols/files/site_file.hpp"
+#include "robot/robot.hpp"
+#include "robot/simulation/world.hpp"
+#include "server/tools/report.hpp"
+#include "server/tools/simulated_public.hpp"
+#include "server/tools/simulation_statistics.hpp"
+
+namespace tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr auto slice = 25ms;  // of simulated time; the control tick comes every second one
+constexpr int slices_per_tick = 2;
+constexpr int slices_per_frame = 8;              // 5 Hz
+constexpr robot::Seconds open_for{30.0 * 60.0};  // a request that waits longer has not been fulfilled
+
+// Wall time that goes into one part of the loop.
+class Stopwatch {
+ public:
+  template <typename Work>
+  auto time(Work&& work) {
+    const auto start = Clock::now();
+    struct Stop {
+      Clock::time_point start;
+      Clock::duration& sum;
+      ~Stop() { sum += Clock::now() - start; }
+    } stop{start, sum_};
+    return work();
+  }
+  double seconds() const { return std::chrono::duration<double>(sum_).count(); }
+
+ private:
+  Clock::duration sum_{};
+};
+
+class Deployment {
+ public:
+  Deployment(const robot::Museum& museum, const SimulateOptions& options)
+      : world_(museum, robot::standard_body(), {.visitors = options.visitors}, options.seed),
+        robot_(museum, config_for(museum, options)),
+        public_(world_.museum(), {.requests_per_hour = options.requests_per_hour}, options.seed * 3 + 2) {}
+
+  void run(robot::Time until) {
+    feed({world_.now(), robot::SetMode{robot::Mode::open}});
+    for (std::int64_t i = 1; world_.now() + slice <= until; ++i) {
+      const auto events = world_time_.time([&] { return world_.advance(world_.now() + slice); });
+      statistics_.see_truth(world_.now(), world_.truth(), world_.twist());
+      for (const auto& event : events) feed(event);
+      if (i % slices_per_tick == 0) {
+        for (auto& wish : public_.wishes(world_.now())) feed({world_.now(), std::move(wish)});
+        feed({world_.now(), robot::Tick{}});
+      }
+    }
+  }
+
+  nlohmann::json report(double wall_seconds) const {
+    nlohmann::json report = statistics_.report(world_, open_for);
+    const double simulated = robot::to_seconds(world_.now());
+    report["realtime_factor"] = simulated / wall_seconds;
+    report["wall_s"] = wall_seconds;
+    report["cpu_s"] = {{"world", world_time_.seconds()}, {"robot", robot_time_.seconds()}};
+    return report;
+  }
+
+ private:
+  static robot::Config config_for(const robot::Museum& museum, const SimulateOptions& options) {
+    robot::Config config;
+    if (!options.find_itself) config.start = museum.home;
+    config.seed = options.seed;
+    return config;
+  }
+
+  void feed(const robot::Input& input) {
+    const auto outputs = robot_time_.time([&] { return robot_.handle(input); });
+    for (const auto& output : outputs) {
+      if (const auto* command = std::get_if<robot::WheelCommand>(&output)) world_.command(*command);
+      if (const auto* motors = std::get_if<robot::EnableMotors>(&output)) world_.enable_motors(motors->on);
+      if (const auto* speech = std::get_if<robot::Speech>(&output)) world_.hear(*speech);
+      statistics_.see(output, input.now);
+      public_.see(output, input.now);
+    }
+  }
+
+  robot::simulation::World world_;
+  robot::Robot robot_;
+  SimulatedPublic public_;
+  SimulationStatistics statistics_;
+  Stopwatch world_time_, robot_time_;
+};
+
+}  // namespace
+
+nlohmann::json simulate(const robot::Museum& museum, const SimulateOptions& options) {
+  const auto start = Clock::now();
+  Deployment deployment(museum, options);
+  deployment.run(robot::from_seconds(options.hours * 3600.0));
+  nlohmann::json report = deployment.report(std::chrono::duration<double>(Clock::now() - start).count());
+  report["site"] = museum.id;
+  report["visitors"] = options.visitors;
+  report["seed"] = options.seed;
+  return report;
+}
+
+void add_simulate_command(CLI::App& app) {
+  auto* command = app.add_subcommand("simulate", "Run a museum without screens, faster than real time; statistics");
+  auto options = std::make_shared<SimulateOptions>();
+  command->add_option("--site", options->site, "the museum's folder, with site.toml")->required();
+  command->add_option("--hours", options->hours, "simulated time")->check(CLI::Range(0.001, 1000.0));
+  command->add_option("--visitors", options->visitors, "people in the museum")->check(CLI::Range(0, 2000));
+  command->add_option("--seed", options->seed, "the same seed, the same day");
+  command->add_option("--report", options->report, "file for the JSON report; - is standard output");
+  command->add_option("--requests-per-hour", options->requests_per_hour, "wishes of web and kiosk visitors")
+      ->check(CLI::Range(0.0, 3600.0));
+  command->add_flag("--find-itself", options->find_itself, "the robot is not told where it starts");
+  command->callback([options] {
+    run_command("simulate", [&] {
+      write_report(simulate(files::load_site(options->site), *options), options->report);
+      return 0;
+    });
+  });
+}
+
+}  // namespace tools
