@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "robot/body.hpp"
@@ -39,7 +40,7 @@ class EvidenceLayer {
   const Grid<std::uint8_t>& grid() const { return grid_; }
   // Cells with any evidence, in the order in which they got it.
   const std::vector<Cell>& active() const { return active_; }
-  // Calls f(cell, evidence) for all active cells; f returns what is to be added.
+  // Sets every active cell to f(cell, evidence).
   template <typename F>
   void revise(F f);
   std::vector<Cell> take_flipped();
