@@ -32,6 +32,8 @@ class CostMap {
   std::vector<CostChange> update(std::span<const Cell> changed, const ObstacleLayers& layers);
 
   const CostGrid& costs() const { return costs_; }
+  // Without anything temporary.
+  const CostGrid& static_costs() const { return static_; }
   // Metres from the cell's centre to the nearest static obstacle, hazard or border.
   const Grid<float>& clearance() const { return clearance_; }
   // Known to be free, outside of hazards and inside of the boundary: a point of the floor, not a place for the robot.
@@ -42,7 +44,11 @@ class CostMap {
     int dx, dy;
     std::uint8_t cost;
   };
-  void stamp(Cell center, std::vector<Cell>& touched);
+  void touch(Cell cell);
+  void stamp(Cell center);
+  void erase(Cell center);
+  void restamp_near(const std::vector<Cell>& erased);
+  std::vector<CostChange> compare_touched();
 
   CostMapConfig config_;
   Grid<float> clearance_;
@@ -50,8 +56,11 @@ class CostMap {
   CostGrid temporary_;
   CostGrid costs_;
   std::vector<Stamp> stamps_;
-  Grid<std::uint8_t> marked_;  // 1: in blocked_
+  int reach_ = 0;                  // cells, of a stamp
+  Grid<std::uint8_t> blocked_at_;  // 1: in blocked_
   std::vector<Cell> blocked_;
+  Grid<std::uint8_t> touched_at_;  // 1: in touched_
+  std::vector<Cell> touched_;      // cells whose temporary cost may have changed
 };
 
 }  // namespace robot

@@ -50,6 +50,8 @@ class Planner {
 
   // Metres of travel between all pairs of points over the static map, symmetric; infinite where there is no way.
   std::vector<std::vector<double>> travel_distances(const std::vector<Point>& points) const;
+  // The same from one point to others.
+  std::vector<double> travel_from(Point from, const std::vector<Point>& to) const;
 
   const CostMap& costs() const { return costs_; }
   const ValueFunction& values() const { return values_; }
