@@ -57,11 +57,9 @@ class P2osLink::Session : public std::enable_shared_from_this<Session> {
   void stop() {
     if (stopping_) return;
     stopping_ = true;
-    if (statistics_.connected) {
-      halt();
-      line_.write(p2os::encode(Command::close));
-    }
-    line_.close();
+    if (!statistics_.connected) return line_.close();
+    halt();
+    line_.close_with(p2os::encode(Command::close));
   }
 
   void drive(const robot::WheelCommand& command) {
@@ -117,14 +115,15 @@ class P2osLink::Session : public std::enable_shared_from_this<Session> {
 
   // SYNC0, SYNC1, SYNC2 at every rate that a base may have been left at.
   awaitable<Trouble> shake_hands() {
-    for (const int rate : rates_to_try({9600, config_.baud, 38400, 19200, 115200, 57600})) {
+    for (const int rate : rates_to_try({statistics_.baud, 9600, config_.baud, 38400, 19200, 115200, 57600})) {
       if (!line_.set_baud(rate).empty()) continue;
-      // Three times: the first may only close a connection that someone left open.
-      for (int attempt = 0; attempt < 3 && !stopping_; ++attempt) {
+      for (int attempt = 0; attempt < 4 && !stopping_; ++attempt) {
         const Handshake outcome = co_await sync();
         if (outcome == Handshake::broken) co_return line_.error();
         if (outcome == Handshake::done) co_return Trouble();
-        if (outcome == Handshake::silent && attempt > 0) break;
+        if (outcome == Handshake::silent && attempt > 0 && line_.baud() == rate) break;
+        // It was still open from before and has been closed: most bases then fall back to 9600.
+        line_.set_baud(outcome == Handshake::out_of_step && line_.baud() == rate ? 9600 : rate);
       }
     }
     co_return "no answer from the base on " + config_.path + " at any rate";

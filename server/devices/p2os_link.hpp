@@ -17,9 +17,9 @@
 namespace devices {
 
 struct P2osLinkConfig {
-  std::string path;           // tty or pty
-  int baud = 115'200;         // wanted after the handshake, if the base can: odometry is younger at higher rates
-  robot::DriveLimits limits;  // handed to the base as its own: it never goes faster or brakes more softly
+  std::string path{};           // tty or pty
+  int baud = 115'200;           // wanted after the handshake, if the base can: odometry is younger at higher rates
+  robot::DriveLimits limits{};  // handed to the base as its own: it never goes faster or brakes more softly
   Duration command_lifetime = 300ms;
 };
 

@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <termios.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -98,6 +99,16 @@ void SerialLine::close() {
     fresh->error = state_->error;
     state_ = std::move(fresh);
   }
+}
+
+void SerialLine::close_with(serial::ByteSpan last_words) {
+  if (state_->port.is_open()) {
+    serial::Bytes bytes = state_->pending;
+    bytes.insert(bytes.end(), last_words.begin(), last_words.end());
+    // A tty takes some 4 KiB at once; one that does not is stuck, and nothing could be done for it.
+    if (::write(state_->port.native_handle(), bytes.data(), bytes.size()) < 0) state_->error = "the line broke";
+  }
+  close();
 }
 
 void SerialLine::discard_input() {

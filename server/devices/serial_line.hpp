@@ -25,6 +25,8 @@ class SerialLine {
   std::string set_baud(int baud);
   int baud() const;
   void close();
+  // Writes what the line takes without waiting, then closes it.
+  void close_with(serial::ByteSpan last_words);
   // Throws away what came in and was not read.
   void discard_input();
 

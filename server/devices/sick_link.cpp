@@ -60,8 +60,7 @@ class SickLink::Session : public std::enable_shared_from_this<Session> {
   void stop() {
     if (stopping_) return;
     stopping_ = true;
-    line_.write(sick::set_mode(sick::mode::on_request));
-    line_.close();
+    line_.close_with(sick::set_mode(sick::mode::on_request));
   }
 
   LineStatistics statistics() const {

@@ -12,10 +12,10 @@
 namespace devices {
 
 struct SickLinkConfig {
-  std::string path;  // tty or pty
+  std::string path{};  // tty or pty
   robot::LaserId laser = robot::LaserId::front;
   int baud = 500'000;  // wanted; lines that do not run at it fall back to 38400
-  serial::sick::Variant variant;
+  serial::sick::Variant variant{};
   // An error or fatal error in a scan's status byte makes the scan worthless. The meaning of that byte stands in one
   // listing only: set false for a scanner that uses it otherwise.
   bool heed_status = true;

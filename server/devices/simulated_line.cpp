@@ -36,6 +36,7 @@ struct SimulatedLine::State : std::enable_shared_from_this<State> {
 
   void plug() {
     pty.emplace();
+    ++plugged;
     reader.assign(::dup(pty->master()));
     wait_for_bytes();
   }
@@ -48,10 +49,10 @@ struct SimulatedLine::State : std::enable_shared_from_this<State> {
 
   void wait_for_bytes() {
     reader.async_read_some(asio::buffer(input),
-                           [self = shared_from_this(), line = ++plugged](error_code error, std::size_t count) {
-                             if (error || line != self->plugged) return;
+                           [self = shared_from_this(), line = plugged](error_code error, std::size_t count) {
+                             if (error || !self->pty || line != self->plugged) return;
                              self->received(ByteSpan(self->input).first(count));
-                             if (self->pty) self->wait_for_bytes();
+                             if (self->pty && line == self->plugged) self->wait_for_bytes();
                            });
   }
 
@@ -71,7 +72,7 @@ struct SimulatedLine::State : std::enable_shared_from_this<State> {
     timer.expires_at(due);
     if (!waiting) return;
     timer.async_wait([self = shared_from_this()](error_code error) {
-      if (error) return;
+      if (error || self->over) return;
       self->waiting = false;
       const Instant now = std::chrono::steady_clock::now();
       const int rate = self->device->baud();
@@ -95,7 +96,8 @@ struct SimulatedLine::State : std::enable_shared_from_this<State> {
   asio::posix::stream_descriptor reader;
   std::array<std::uint8_t, 1024> input;
   bool waiting = false;
-  std::uint64_t plugged = 0;
+  bool over = false;          // the line's owner is gone
+  std::uint64_t plugged = 0;  // times; what an older terminal still says is not heard
   Tap tap;
 };
 
@@ -108,6 +110,7 @@ SimulatedLine::SimulatedLine(asio::any_io_executor executor, std::shared_ptr<Sim
 
 SimulatedLine::~SimulatedLine() {
   unplug();
+  state_->over = true;
   state_->timer.cancel();
 }
 

@@ -28,7 +28,7 @@ class SimulatedLine {
   void inject(serial::ByteSpan bytes);
   // From now on called with everything that is sent to the client, and with all that comes from it, at once.
   struct Tap {
-    std::function<void(serial::ByteSpan, Instant)> sent, received;
+    std::function<void(serial::ByteSpan, Instant)> sent{}, received{};
   };
   void tap(Tap tap);
 

@@ -14,11 +14,11 @@ namespace devices {
 
 struct SimulatedP2osConfig {
   // The body below the firmware.
-  std::function<void(robot::Twist)> drive;  // what the motors' controllers shall do now
-  std::function<void(bool)> enable_motors;
-  std::function<robot::Odometry()> odometry;
-  std::function<robot::BaseState()> state;
-  std::function<robot::SonarScan()> sonars;  // fires those that are due
+  std::function<void(robot::Twist)> drive{};  // what the motors' controllers shall do now
+  std::function<void(bool)> enable_motors{};
+  std::function<robot::Odometry()> odometry{};
+  std::function<robot::BaseState()> state{};
+  std::function<robot::SonarScan()> sonars{};  // fires those that are due
 
   serial::p2os::Identity identity{"Docent", "Pioneer", "peoplebot-sh"};
   int baud = 9600;  // at power-on and after CLOSE

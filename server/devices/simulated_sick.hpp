@@ -12,7 +12,7 @@
 namespace devices {
 
 struct SimulatedSickConfig {
-  std::function<robot::LaserScan()> scan;  // what the scanner sees now
+  std::function<robot::LaserScan()> scan{};  // what the scanner sees now
   std::string type = "LMS200;30106;V02.10 ";
   int baud = 9600;                // at power-on, and after a reset
   Duration config_write = 80ms;   // real ones take up to seconds, some hosts wait for one
