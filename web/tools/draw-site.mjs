@@ -33,6 +33,15 @@ function inside(shape) {
   throw new Error(`shape "${shape.name ?? JSON.stringify(shape)}": needs box, disc, polygon, or line with width`);
 }
 
+// [x0, y0, x1, y1] of a sound shape.
+function bounds({ box, disc, polygon, line, width }) {
+  if (box) return box;
+  if (disc) return [disc[0] - disc[2], disc[1] - disc[2], disc[0] + disc[2], disc[1] + disc[2]];
+  const points = polygon ?? line, margin = polygon ? 0 : width / 2;
+  const xs = points.map((p) => p[0]), ys = points.map((p) => p[1]);
+  return [Math.min(...xs) - margin, Math.min(...ys) - margin, Math.max(...xs) + margin, Math.max(...ys) + margin];
+}
+
 function insidePolygon(corners, x, y) {
   let odd = false;
   corners.forEach(([ax, ay], i) => {
@@ -61,9 +70,10 @@ export function draw(plan) {
   const paint = (shapes, value) => {
     for (const shape of shapes ?? []) {
       const covers = inside(shape);
-      for (let row = 0; row < height; ++row) {
+      const [x0, y0, x1, y1] = bounds(shape).map((edge) => Math.floor(edge / resolution));
+      for (let row = Math.max(0, height - 1 - y1); row < Math.min(height, height - y0); ++row) {
         const y = (height - row - 0.5) * resolution;
-        for (let column = 0; column < width; ++column) {
+        for (let column = Math.max(0, x0); column <= Math.min(width - 1, x1); ++column) {
           if (covers((column + 0.5) * resolution, y)) cells[row * width + column] = value;
         }
       }
