@@ -67,7 +67,7 @@ class DocentVisit extends LitElement {
     const site = value(store.state.site);
     if (site && !this.settled) {
       this.settled = true;
-      this.follow = phone.matches && innerWidth / site.width < followBelow;
+      this.follow = phone.matches && innerWidth / (site.width * site.resolution) < followBelow;
     }
   }
 

@@ -52,7 +52,7 @@ export class DocentExhibitCard extends LitElement {
     if (!e) return nothing;
     const w = t(), here = this.here();
     const narration = here ? e.narrations[this.telling(e)] : undefined;
-    const picture = narration?.picture || e.picture;
+    const picture = narration?.picture || e.picture || e.narrations.find((n) => n.picture)?.picture;
     return html`<article class="card plate" aria-labelledby="card-title">
       ${picture ? html`<img src=${pictureUrl(picture)} alt=${w.pictureOf(say(e.title))} @error=${(x: Event) => ((x.target as HTMLElement).hidden = true)}>` : nothing}
       <button class="sq shut" aria-label=${w.close} @click=${() => this.dispatchEvent(new CustomEvent("close-card", { bubbles: true }))}>${icon("close")}</button>

@@ -149,6 +149,36 @@ const drawings: Record<string, Drawing> = {
     line(p, -a * 0.6, -b * 0.7, -a * 0.6, b * 0.7);
     line(p, a * 0.2, -b * 0.7, a * 0.2, b * 0.7);
   },
+  truss(p, a, b) {
+    line(p, -a, -b * 0.6, a, -b * 0.6);
+    line(p, -a, b * 0.6, a, b * 0.6);
+    const n = Math.max(3, Math.round(a / b));
+    for (let k = 0; k < n; k++) {
+      const x0 = -a + (2 * a * k) / n, x1 = x0 + (2 * a) / n;
+      line(p, x0, b * 0.6, (x0 + x1) / 2, -b * 0.6, x1, b * 0.6);
+    }
+  },
+  piano(p, a, b) {
+    p.moveTo(-a, -b * 0.9);
+    p.lineTo(-a, b * 0.9);
+    p.lineTo(a * 0.1, b * 0.9);
+    p.bezierCurveTo(a * 0.6, b * 0.9, a * 0.2, 0, a * 0.75, -b * 0.1);
+    p.bezierCurveTo(a * 1.05, -b * 0.2, a * 1.05, -b * 0.9, a * 0.6, -b * 0.9);
+    p.closePath();
+    line(p, -a * 0.72, -b * 0.9, -a * 0.72, b * 0.9);
+  },
+  coil(p, a, b) {
+    const r = Math.min(a, b);
+    for (const k of [0.95, 0.78, 0.61, 0.44]) circle(p, 0, 0, r * k);
+  },
+  row(p, a, b) {
+    const n = Math.max(2, Math.round(a / b)), r = Math.min(b * 0.8, (a / n) * 0.8);
+    for (let k = 0; k < n; k++) {
+      const x = -a + (a * (2 * k + 1)) / n;
+      circle(p, x, 0, r);
+      circle(p, x, 0, r * 0.5);
+    }
+  },
   // Whatever has no drawing of its own: a plinth with a second edge.
   plinth(p, a, b) {
     box(p, -a, -b, a, b);
@@ -159,12 +189,15 @@ const drawings: Record<string, Drawing> = {
 
 // Words that museums use for their drawings, to the drawing that shows it best.
 const words: [RegExp, string][] = [
-  [/loco|train|tram|rail|wagon/, "locomotive"], [/beam|steam|engine|motor|turbine|pump/, "engine"], [/wheel|bicycle|carriage|dynamo|generator/, "wheel"],
-  [/pendul|compass|sundial/, "pendulum"], [/orrer|planet|astrolab|star|solar/, "orrery"], [/press|print/, "press"], [/loom|weav|jacquard|textile/, "loom"],
-  [/bell|kettle|capsule|tank|well|urn|vase|amphora|meteor/, "bell"], [/tunnel|bridge/, "tunnel"], [/transmit|radio|spark|coil|tesla|telegraph|phone/, "transmitter"],
-  [/telescop|refract|lens|optic|microscop|cannon/, "telescope"], [/propell|screw|fan|windmill|rotor/, "propeller"], [/typewr|desk|tables?|bench|clocks/, "desks"],
-  [/glider|plane|air|flight|wing|kite/, "plane"], [/car$|auto|coach|cart|truck|rover/, "car"], [/dino|skelet|whale|fossil|mammoth|bone/, "skeleton"],
-  [/globe|earth|world|moon/, "globe"], [/ship|boat|canoe|submar|hull/, "vessel"], [/comput|cabinet|case|safe|gem|coin|instrument|mask|flag|dress/, "cabinet"],
+  [/loco|train|tram|rail|wagon/, "locomotive"], [/mule|machine|loom|weav|jacquard|textile/, "loom"], [/hammer|press|print/, "press"],
+  [/girder|truss|frame/, "truss"], [/beam|steam|engine|motor|turbine|pump/, "engine"], [/cable|rope|coil|spool/, "coil"], [/piano|organ/, "piano"],
+  [/wheel|bicycle|carriage|dynamo|generator|parachut|umbrella/, "wheel"], [/pendul|compass|sundial|lens/, "pendulum"],
+  [/orrer|planet|astrolab|star|solar/, "orrery"], [/insulator|bottles|jars/, "row"],
+  [/bell|kettle|capsule|tank|well|urn|vase|amphora|meteor|furnace|bulb|tyre|tire|tin|crystal/, "bell"], [/tunnel|bridge/, "tunnel"],
+  [/transmit|radio|spark|tesla|telegraph|projector/, "transmitter"], [/telescop|refract|optic|microscop|cannon/, "telescope"],
+  [/propell|screw|fan|windmill|rotor/, "propeller"], [/typewr|desk|tables?|bench|clocks/, "desks"], [/glider|plane|air|flight|wing|kite/, "plane"],
+  [/car$|auto|coach|cart|truck|rover/, "car"], [/dino|skelet|whale|fossil|mammoth|bone/, "skeleton"], [/globe|earth|world|moon/, "globe"],
+  [/ship|boat|canoe|submar|hull/, "vessel"], [/comput|cabinet|case|safe|gem|coin|instrument|mask|flag|dress|phone/, "cabinet"],
 ];
 
 function drawingOf(icon: string, id: string): Drawing {

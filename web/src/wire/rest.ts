@@ -32,7 +32,7 @@ export function decodeStatus(r: Reader): Status {
   const tour = r.at("tour");
   return {
     time: r.at("time").number(),
-    pose: pose(r.at("pose")),
+    pose: r.at("pose").missing ? null : pose(r.at("pose")),
     sigmaPosition: sigma.missing ? 0 : sigma.at("position").numberOr(0),
     sigmaTheta: sigma.missing ? 0 : sigma.at("theta").numberOr(0),
     mode: r.at("mode").oneOf(modes),
@@ -116,7 +116,7 @@ export function decodeExhibits(r: Reader): Exhibit[] {
     picture: e.at("picture").stringOr(""),
     viewpoints: e.at("viewpoints").listOr(pose),
     narrations: e.at("narrations").listOr((n) => ({
-      text: text(n.at("text")), picture: n.at("picture").stringOr(""), duration: n.at("duration").numberOr(0),
+      text: texts(n, "text", "texts"), picture: n.at("picture").stringOr(""), duration: n.at("duration").numberOr(0),
     })),
   }));
 }

@@ -16,7 +16,7 @@ export type Activity =
 
 export interface Status {
   time: number;
-  pose: Pose;
+  pose: Pose | null; // before the robot has looked round
   sigmaPosition: number; // m
   sigmaTheta: number; // rad
   mode: Mode;
@@ -153,8 +153,8 @@ export type ClientMessage =
 export interface Site {
   id: string;
   title: Text;
-  width: number; // m
-  height: number; // m
+  width: number; // cells
+  height: number; // cells
   resolution: number; // m per cell
   origin: { x: number; y: number };
   boundary: Point[];
