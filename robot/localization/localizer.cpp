@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "robot/geometry/ray_cast.hpp"
 #include "robot/localization/beams.hpp"
@@ -70,14 +71,16 @@ struct Localizer::Parts {
   MotionStep since;               // way and turns since then
   Time weighed_at;
   int weighed = 0;
-  Cluster best;  // heaviest lump at the samples' time
+  Cluster best;                                                    // heaviest lump at the samples' time
+  Eigen::Matrix3d predicted_covariance = Eigen::Matrix3d::Zero();  // of its belief before the last scan was weighed
   int modes = 0;
   bool localized = false;
 
   Pose pose;       // refined estimate ...
   Pose pose_odom;  // ... and the odometry it belongs to
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  double offset = 0.0;  // m, learned
+  double offset = 0.0;      // m, learned
+  double usual_fit = -0.3;  // nats a trusted beam at the best pose, slow average
 
   std::vector<Glance> glances;
   int scans_since_wish = 0;  // scans since a search has been wanted
@@ -92,8 +95,9 @@ struct Localizer::Parts {
   void advance(const Pose& odom);
   void summarize();
   void weigh(const LaserScan& scan, const Pose& base_from_laser, bool resting);
-  std::vector<Point> trusted_ends(const LaserScan& scan, const Pose& base_from_laser);
-  void refine(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom);
+  std::vector<Beam> trusted(const Beams& beams);
+  bool refine(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom, bool freshly_weighed);
+  void doubt(const Beams& beams, std::span<const Point> ends);
   void learn_offset(const ScanMatch& match);
   void judge_state(const ScanReading& reading);
   void glance(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom);
@@ -117,26 +121,30 @@ void Localizer::Parts::summarize() {
   pose = best.mean;
   pose_odom = odom_then.value_or(Pose{});
   covariance = best.covariance;
+  predicted_covariance = best.covariance;
 }
 
-// The beams to weigh the samples by: thinned, a different comb each time, and without those that surely met somebody.
-std::vector<Point> Localizer::Parts::trusted_ends(const LaserScan& scan, const Pose& base_from_laser) {
-  const int stride = std::max(1, (static_cast<int>(scan.ranges.size()) + config.beams - 1) / config.beams);
-  const Beams beams = beams_of(scan, base_from_laser, weighed % stride, stride);
+// The beams to weigh the samples by: those that did not surely meet somebody, and some that nobody asks about.
+std::vector<Beam> Localizer::Parts::trusted(const Beams& beams) {
   const std::vector<Pose> belief = filter.draw(config.filter_samples, random.uniform());
-  std::vector<Point> ends;
+  std::vector<Beam> result;
   for (const Beam& beam : beams.beams) {
     const bool untested = random.chance(config.unfiltered_share);
-    if (untested || !reader.is_short(beam, beams.origin, belief)) ends.push_back(beam.end);
+    if (untested || !reader.is_short(beam, beams.origin, belief)) result.push_back(beam);
   }
-  return ends;
+  return result;
 }
 
 void Localizer::Parts::weigh(const LaserScan& scan, const Pose& base_from_laser, bool resting) {
-  const std::vector<Point> ends = trusted_ends(scan, base_from_laser);
+  // A different comb of beams each time.
+  const int stride = std::max(1, (static_cast<int>(scan.ranges.size()) + config.beams - 1) / config.beams);
+  const Beams comb = beams_of(scan, base_from_laser, weighed % stride, stride);
+  std::vector<Point> ends;
+  for (const Beam& beam : trusted(comb)) ends.push_back(beam.end);
   const bool searching = !localized || larger_axis(best.covariance) > 0.3;
   field.set_hit_sigma(config.likelihood.hit_sigma * (searching ? 2.0 : 1.0));
   const Particles& particles = filter.particles();
+  const Eigen::Matrix3d predicted = filter.clusters().front().covariance;
   std::vector<float> log_likelihood(particles.size());
   field.weigh(particles.x, particles.y, particles.theta, ends, log_likelihood);
   if (resting) {
@@ -144,33 +152,59 @@ void Localizer::Parts::weigh(const LaserScan& scan, const Pose& base_from_laser,
   }
   filter.weigh(log_likelihood);
   summarize();
+  if (modes <= 1) predicted_covariance = predicted;
   filter.resample_when_uneven();
+  doubt(comb, ends);
   weighed_at = scan.time;
   ++weighed;
 }
 
-// The estimate between the samples: the scan aligned with the map, held by the belief.
-void Localizer::Parts::refine(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom) {
+// The estimate between the samples: the scan aligned with the map, held by the belief. False when the scan fits well
+// only where the belief is not.
+bool Localizer::Parts::refine(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom,
+                              bool freshly_weighed) {
   const Pose predicted = best.mean * relative(*odom_then, odom);
-  const Eigen::Matrix3d prior = with_floor(best.covariance, 0.01, 0.005);
+  const Eigen::Matrix3d prior = with_floor(predicted_covariance, 0.01, 0.005);
   pose = predicted;
   pose_odom = odom;
-  covariance = prior;
-  if (larger_axis(best.covariance) > 0.5) return;
+  covariance = with_floor(best.covariance, 0.01, 0.005);
+  if (larger_axis(best.covariance) > 0.5) return true;
   const int stride = std::max(1, (static_cast<int>(scan.ranges.size()) + 180) / 181);
   Beams beams = beams_of(scan, base_from_laser, 0, stride);
-  const ScanReading reading = reader.read(scan, predicted * base_from_laser, larger_axis(prior), heading_sigma(prior));
+  const ScanReading reading =
+      reader.read(scan, predicted * base_from_laser, larger_axis(covariance), heading_sigma(covariance));
   std::erase_if(beams.beams,
                 [&](const Beam& beam) { return reading.kinds[static_cast<std::size_t>(beam.index)] != BeamKind::map; });
-  if (beams.beams.size() < 10) return;
+  if (beams.beams.size() < 10) return true;
   const ScanMatch match =
       match_scan(field.distances(), field.surface_offset(), beams.beams, predicted, prior, config.match);
   const Eigen::Vector3d off(match.pose.x - predicted.x, match.pose.y - predicted.y,
                             wrap_angle(match.pose.theta - predicted.theta));
-  if (match.fit < 0.3 || off.dot(prior.inverse() * off) > 16.0) return;
+  if (match.fit < 0.3 || off.dot(prior.inverse() * off) > 16.0) return false;
   pose = match.pose;
   covariance = with_floor(match.covariance, 0.01, 0.003);
   learn_offset(match);
+  if (freshly_weighed) {
+    filter.infuse({pose, larger_axis(covariance), heading_sigma(covariance), 1.0}, config.match_share);
+  }
+  return true;
+}
+
+// Augmented MCL (Thrun et al., "Probabilistic Robotics", table 8.3) with a local proposal: when the trusted beams fit
+// far worse than they used to, some samples are drawn where the scan would fit. They stay if the next scans agree.
+void Localizer::Parts::doubt(const Beams& beams, std::span<const Point> trusted_ends) {
+  if (trusted_ends.size() < 10 || larger_axis(best.covariance) > 0.5) return;
+  const double fit = field.log_likelihood(best.mean, trusted_ends) / static_cast<double>(trusted_ends.size());
+  if (fit > usual_fit - config.doubt_below) {
+    usual_fit += 0.02 * (fit - usual_fit);
+    return;
+  }
+  const Pose nearby = search_nearby(field, beams.beams, best.mean, config.match).pose;
+  const Look look{{beams}};
+  // The end points alone would look through walls to find a place; the beam model does not.
+  const double gain =
+      judge_place(caster, field, look, nearby).score - judge_place(caster, field, look, best.mean).score;
+  if (gain > config.doubt_gain) filter.infuse({nearby, 0.05, 0.02, 1.0}, config.doubt_share);
 }
 
 void Localizer::Parts::learn_offset(const ScanMatch& match) {
@@ -321,12 +355,14 @@ ScanReading Localizer::update(const LaserScan& scan, const Pose& base_from_laser
       norm(moved.position()) < p.config.update_after_metres && std::abs(moved.theta) < p.config.update_after_turn;
   // While the place is in doubt, patience at rest would only cost time.
   const Seconds patience = p.localized ? p.config.update_after_rest : 0.2 * p.config.update_after_rest;
-  const bool due = !resting || scan.time - p.weighed_at >= patience;
+  bool due = !resting || scan.time - p.weighed_at >= patience;
+  // A scan that does not fit where the robot should be by now is not put off: the wheels may have slipped.
+  if (!due) due = !p.refine(scan, base_from_laser, odom, false);
   if (due) {
     p.advance(odom);
     p.weigh(scan, base_from_laser, resting);
+    p.refine(scan, base_from_laser, odom, true);
   }
-  p.refine(scan, base_from_laser, odom);
   ScanReading reading =
       p.reader.read(scan, p.pose * base_from_laser, larger_axis(p.covariance), heading_sigma(p.covariance));
   reading.weighed = due;

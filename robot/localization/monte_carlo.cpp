@@ -21,6 +21,11 @@ void systematic(const std::vector<double>& weight, std::size_t count, double off
   }
 }
 
+Pose sample(const Seed& seed, Random& random) {
+  return {seed.mean.x + random.normal(seed.sigma_position), seed.mean.y + random.normal(seed.sigma_position),
+          wrap_angle(seed.mean.theta + random.normal(seed.sigma_theta))};
+}
+
 }  // namespace
 
 void Particles::resize(std::size_t count) {
@@ -83,11 +88,20 @@ void MonteCarlo::mix_in(std::span<const Seed> seeds, double share) {
   for (std::size_t k = 0; k < added; ++k) {
     const Seed& seed = seeds[k % seeds.size()];
     const std::size_t of_this = (added - k % seeds.size() + seeds.size() - 1) / seeds.size();
-    const Pose pose{seed.mean.x + random_.normal(seed.sigma_position),
-                    seed.mean.y + random_.normal(seed.sigma_position),
-                    wrap_angle(seed.mean.theta + random_.normal(seed.sigma_theta))};
-    particles_.set(first + k, pose, (1.0 - old_share) * seed.mass / mass / static_cast<double>(of_this));
+    particles_.set(first + k, sample(seed, random_),
+                   (1.0 - old_share) * seed.mass / mass / static_cast<double>(of_this));
   }
+}
+
+void MonteCarlo::infuse(const Seed& seed, double share) {
+  const std::size_t size = particles_.size();
+  if (size == 0) return;
+  const double w = 1.0 / static_cast<double>(size);
+  for (auto k = static_cast<std::size_t>(share * static_cast<double>(size)); k > 0; --k) {
+    particles_.set(random_.index(size), sample(seed, random_), w);
+  }
+  const double total = std::accumulate(particles_.weight.begin(), particles_.weight.end(), 0.0);
+  for (auto& weight : particles_.weight) weight /= total;
 }
 
 void MonteCarlo::predict(const MotionStep& step, const MotionNoise& noise) {

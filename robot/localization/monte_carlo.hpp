@@ -62,6 +62,9 @@ class MonteCarlo {
   // Adds other hypotheses; together they get this share (0..1) of the belief's mass.
   void mix_in(std::span<const Seed> seeds, double share);
 
+  // Replaces this share of the samples, drawn blindly, by samples of the seed.
+  void infuse(const Seed& seed, double share);
+
   // Moves every sample by the step with noise of its own; draws more of them when they spread over more boxes.
   void predict(const MotionStep& step, const MotionNoise& noise);
   // Multiplies the weights by exp(log_likelihood), one a sample, and normalises.

@@ -13,17 +13,20 @@ MotionSpread spread_of(const MotionStep& step, const MotionNoise& noise) {
                               square(noise.rotation_from_translation) * path + square(noise.rotation_floor));
   spread.stretch = noise.translation_from_translation;
   spread.translation = std::hypot(noise.translation_from_rotation * turned, noise.translation_floor);
+  spread.slip_share = noise.slip_share;
+  spread.slip_factor = noise.slip_factor;
   return spread;
 }
 
 Pose sample_motion(const Pose& from, const MotionStep& step, const MotionSpread& spread, Random& random) {
-  const double before = random.normal(spread.rotation * std::numbers::sqrt2 / 2);
-  const double after = random.normal(spread.rotation * std::numbers::sqrt2 / 2);
-  const double stretch = 1.0 + random.normal(spread.stretch);
-  const Pose noisy_start{from.x, from.y, from.theta + before};
-  const Point to = noisy_start * Point{stretch * step.moved.x + random.normal(spread.translation),
-                                       stretch * step.moved.y + random.normal(spread.translation)};
-  return {to.x, to.y, wrap_angle(from.theta + before + step.moved.theta + after)};
+  const bool slips = spread.slip_share > 0.0 && random.chance(spread.slip_share);
+  const double wider = slips ? spread.slip_factor : 1.0, part = slips ? random.uniform(-1.0, 1.0) : 1.0;
+  const double turn = wider * spread.rotation * std::numbers::sqrt2 / 2;
+  const double before = random.normal(turn), after = random.normal(turn);
+  const double stretch = part + random.normal(wider * spread.stretch), shift = wider * spread.translation;
+  const Point moved{stretch * step.moved.x + random.normal(shift), stretch * step.moved.y + random.normal(shift)};
+  const Point to = Pose{from.x, from.y, from.theta + before} * moved;
+  return {to.x, to.y, wrap_angle(from.theta + before + part * step.moved.theta + after)};
 }
 
 }  // namespace robot

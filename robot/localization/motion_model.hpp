@@ -16,6 +16,10 @@ struct MotionNoise {
   double translation_from_rotation = 0.02;    // m a rad turned (alpha4)
   double rotation_floor = 0.003;              // rad a step, whatever its length: keeps the belief alive
   double translation_floor = 0.004;           // m a step
+  // Wheels that slip, on a rug or against somebody's foot, and encoders that lose their sign say little: this share of
+  // the samples takes any part of the step, forwards or backwards, and the noise this many times.
+  double slip_share = 0.1;
+  double slip_factor = 4.0;
 };
 
 // Where the wheels say the base went between two scans, and how much they did on the way there.
@@ -30,6 +34,8 @@ struct MotionSpread {
   double rotation = 0.0;     // rad, half of its variance acts before the translation and half after
   double stretch = 0.0;      // relative, along the way
   double translation = 0.0;  // m, each axis
+  double slip_share = 0.0;
+  double slip_factor = 1.0;
 };
 MotionSpread spread_of(const MotionStep& step, const MotionNoise& noise);
 

@@ -68,4 +68,27 @@ ScanMatch match_scan(const DistanceField& distances, double surface_offset, std:
   return match;
 }
 
+ScanMatch search_nearby(const LikelihoodField& field, std::span<const Beam> beams, const Pose& around,
+                        const ScanMatchConfig& config) {
+  constexpr int reach = 5, turns = 10;  // lattice steps to every side
+  constexpr double step = 0.2, turn = radians(4);
+  std::vector<double> x, y, theta;
+  for (int k = -turns; k <= turns; ++k) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        x.push_back(around.x + step * i);
+        y.push_back(around.y + step * j);
+        theta.push_back(wrap_angle(around.theta + turn * k));
+      }
+    }
+  }
+  std::vector<Point> ends;
+  for (const Beam& beam : beams) ends.push_back(beam.end);
+  std::vector<float> fit(x.size());
+  field.weigh(x, y, theta, ends, fit);
+  const auto best = static_cast<std::size_t>(std::max_element(fit.begin(), fit.end()) - fit.begin());
+  const Eigen::Matrix3d spread = Eigen::Vector3d(step * step, step * step, turn * turn).asDiagonal();
+  return match_scan(field.distances(), field.surface_offset(), beams, {x[best], y[best], theta[best]}, spread, config);
+}
+
 }  // namespace robot
