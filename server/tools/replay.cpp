@@ -1,0 +1,96 @@
+#include "server/tools/replay.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace tools {
+namespace {
+
+constexpr double search_units_per_second = 2500.0;  // a quarter of a core: a unit is about 0.1 ms
+constexpr double longest_search = 1.0;              // s of search between two scans, however long the log was silent
+
+// How unsure a given start pose is: a hand's breadth and a few degrees, as staff would place the robot.
+constexpr double start_sigma_position = 0.1;  // m
+constexpr double start_sigma_theta = 0.05;    // rad
+
+class Stopwatch {
+ public:
+  double ms() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+Replay::Replay(ReplaySetup setup)
+    : setup_(std::move(setup)),
+      localizer_(std::make_unique<robot::Localizer>(setup_.map, setup_.localizer, setup_.seed)) {
+  if (setup_.start) {
+    localizer_->start_at(*setup_.start, start_sigma_position, start_sigma_theta);
+  } else {
+    localizer_->start_globally();
+  }
+}
+Replay::~Replay() = default;
+Replay::Replay(Replay&&) noexcept = default;
+Replay& Replay::operator=(Replay&&) noexcept = default;
+
+bool Replay::next() {
+  for (; at_ < setup_.log.entries.size(); ++at_) {
+    const auto& entry = setup_.log.entries[at_];
+    if (const auto* odometry = std::get_if<robot::Odometry>(&entry)) {
+      if (setup_.window.contains(robot::to_seconds(odometry->time))) move(*odometry);
+      continue;
+    }
+    const auto& logged = std::get<files::LoggedScan>(entry);
+    if (!setup_.window.contains(robot::to_seconds(logged.scan.time)) || !odometry_) continue;
+    take(logged);
+    ++at_;
+    return true;
+  }
+  return false;
+}
+
+void Replay::move(const robot::Odometry& odometry) {
+  if (odometry_) {
+    step_.path_m += robot::distance(odometry_->odom_from_base.position(), odometry.odom_from_base.position());
+  }
+  const Stopwatch watch;
+  localizer_->move(odometry.odom_from_base, odometry.time);
+  pending_ms_ += watch.ms();
+  odometry_ = odometry;
+}
+
+// The search gets what a live robot would spare for it between two scans, in units of work, so that it does not depend
+// on this machine's speed.
+void Replay::search_until(double time) {
+  const double elapsed = std::clamp(time - searched_until_.value_or(time), 0.0, longest_search);
+  searched_until_ = time;
+  const Stopwatch watch;
+  localizer_->work(static_cast<int>(elapsed * search_units_per_second));
+  step_.search_ms = watch.ms();
+}
+
+void Replay::take(const files::LoggedScan& logged) {
+  step_.time = robot::to_seconds(logged.scan.time);
+  search_until(step_.time);
+  const Stopwatch watch;
+  auto reading = localizer_->update(logged.scan, logged.base_from_laser, odometry_->odom_from_base);
+  const auto estimate = localizer_->estimate();
+  step_.scan_ms = pending_ms_ + watch.ms();
+  pending_ms_ = 0.0;
+  step_.weighed = reading.weighed;
+  step_.lost = estimate.lost;
+  step_.pose = {logged.scan.time,   estimate.map_from_base, estimate.sigma_position(), estimate.sigma_theta(),
+                estimate.particles, estimate.localized,     odometry_->twist};
+  step_.scan = {logged.scan.time,       logged.scan.laser,  reading.map_from_laser,  logged.scan.angle_min,
+                logged.scan.angle_step, logged.scan.ranges, std::move(reading.kinds)};
+  step_.truth = files::pose_at(setup_.truth, step_.time);
+}
+
+robot::Belief Replay::belief(int at_most) const { return {step_.pose.time, localizer_->samples(at_most)}; }
+
+}  // namespace tools
