@@ -7,6 +7,7 @@
 
 #include "robot/geometry/grid.hpp"
 #include "robot/geometry/pose.hpp"
+#include "robot/motion/arc_collision.hpp"
 #include "robot/museum.hpp"
 
 namespace robot {
@@ -38,11 +39,17 @@ class VirtualSensors {
   double signed_distance(Point point) const;
 
  private:
-  double cast(Point from, double direction, double limit) const;
+  double cast(Point from, Point direction, double limit) const;
 
   VirtualSensorsConfig config_;
   Grid<float> distance_;
   bool has_hazards_ = false;
 };
+
+// Seconds until a constant twist brings the footprint onto a hazard (see time_to_contact; points are the readings'
+// own). When the base's centre is nearer to a hazard than the footprint is wide, or inside, only turning and outward
+// motion are admissible: a hazard stops the robot but never traps it.
+double time_to_hazard(const VirtualReadings& readings, const PointColumns& points, const Footprint& footprint,
+                      const Twist& twist);
 
 }  // namespace robot
