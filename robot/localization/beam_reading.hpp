@@ -26,23 +26,26 @@ struct ScanReading {
   Pose map_from_laser;
   std::vector<BeamKind> kinds;  // one a beam of the scan
   std::vector<float> expected;  // m, one a beam: range to the map's first surface
+  int unknown = 0;              // beams among those of kind map that ended where the map is unknown
   bool weighed = false;         // the samples were weighed by this scan
 };
 
 // How many of a scan's beams were which.
 struct BeamCounts {
-  int map = 0;
+  int map = 0;  // without those that ended in unknown space
   int person = 0;
   int far = 0;
+  int unknown = 0;
   int none = 0;
-  int returns() const { return map + person + far; }
+  // Impossible ones among those that say something about the place: 0..1.
+  double far_share() const { return map + far > 0 ? static_cast<double>(far) / (map + far) : 0.0; }
 };
-BeamCounts count_kinds(const std::vector<BeamKind>& kinds);
+BeamCounts count_beams(const ScanReading& reading);
 
 class BeamReader {
  public:
-  // Keeps references: all must outlive the reader.
-  BeamReader(const OccupancyGrid& map, const RayCaster& caster, const LikelihoodField& field, BeamReadingConfig config);
+  // Keeps references: both must outlive the reader.
+  BeamReader(const RayCaster& caster, const LikelihoodField& field, BeamReadingConfig config);
 
   // Reads every beam from one pose that is known to within the given standard deviations (m, rad).
   // Ends in unknown space count as map: they contradict nothing. So do beams that slip past an edge.
@@ -53,9 +56,8 @@ class BeamReader {
   bool is_short(const Beam& beam, Point laser, std::span<const Pose> belief) const;
 
  private:
-  BeamKind kind_of(float range, float expected, const Pose& laser, double angle, double slack, double swing) const;
+  bool slips_past(Point from, double angle, double reach, double swing) const;
 
-  const OccupancyGrid& map_;
   const RayCaster& caster_;
   const LikelihoodField& field_;
   BeamReadingConfig config_;

@@ -95,15 +95,15 @@ void LikelihoodField::weigh(std::span<const double> x, std::span<const double> y
 
 double LikelihoodField::log_likelihood(const Pose& pose, std::span<const Point> ends) const {
   double sum = 0.0;
-  for (const Point& end : ends) {
-    const Cell cell = distances_.cell(pose * end);
-    const auto level = distances_.contains(cell)
-                           ? levels_[static_cast<std::size_t>(cell.y + 1) * static_cast<std::size_t>(width_) +
-                                     static_cast<std::size_t>(cell.x + 1)]
-                           : std::uint8_t{255};
-    sum -= cost_unit * cost_[level];
-  }
+  for (const Point& end : ends) sum -= cost_unit * cost_[level_at(pose * end)];
   return sum;
+}
+
+std::uint8_t LikelihoodField::level_at(Point point) const {
+  const Cell cell = distances_.cell(point);
+  if (!distances_.contains(cell)) return 255;
+  return levels_[static_cast<std::size_t>(cell.y + 1) * static_cast<std::size_t>(width_) +
+                 static_cast<std::size_t>(cell.x + 1)];
 }
 
 }  // namespace robot

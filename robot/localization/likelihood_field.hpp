@@ -41,12 +41,16 @@ class LikelihoodField {
   // The same for one pose, without tempering: the textbook.
   double log_likelihood(const Pose& pose, std::span<const Point> ends) const;
 
+  // Whether a beam's end there says anything: not in unknown space away from all surfaces, nor outside.
+  bool tells(Point end) const { return level_at(end) != 255; }
+
   // Distance to the surfaces' cell centres, m; finite everywhere, at most `far`.
   const DistanceField& distances() const { return distances_; }
   static constexpr float far = 2.0f;
 
  private:
   void fill_costs();
+  std::uint8_t level_at(Point point) const;
 
   LikelihoodConfig config_;
   double offset_ = 0.0;

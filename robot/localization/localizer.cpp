@@ -39,7 +39,7 @@ struct Localizer::Parts {
         map(grid),
         field(map, c.likelihood, c.surface_offset),
         caster(map),
-        reader(map, caster, field, c.reading),
+        reader(caster, field, c.reading),
         search(map, caster, field, c.search),
         judge(c.lost),
         random(seed),
@@ -80,7 +80,7 @@ struct Localizer::Parts {
   Pose pose_odom;  // ... and the odometry it belongs to
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double offset = 0.0;      // m, learned
-  double usual_fit = -0.3;  // nats a trusted beam at the best pose, slow average
+  double usual_far = 0.05;  // share of impossible beams, slow average
 
   std::vector<Glance> glances;
   int scans_since_wish = 0;  // scans since a search has been wanted
@@ -94,10 +94,13 @@ struct Localizer::Parts {
   }
   void advance(const Pose& odom);
   void summarize();
-  void weigh(const LaserScan& scan, const Pose& base_from_laser, bool resting);
-  std::vector<Beam> trusted(const Beams& beams);
-  bool refine(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom, bool freshly_weighed);
-  void doubt(const Beams& beams, std::span<const Point> ends);
+  Beams comb(const LaserScan& scan, const Pose& base_from_laser) const;
+  std::vector<Point> trusted_ends(const Beams& beams);
+  void weigh(const Beams& beams, double temper);
+  void take_in(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom, double temper);
+  ScanReading read(const LaserScan& scan, const Pose& map_from_laser) const;
+  bool refine(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom);
+  void doubt(const Beams& beams, const ScanReading& reading);
   void learn_offset(const ScanMatch& match);
   void judge_state(const ScanReading& reading);
   void glance(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom);
@@ -124,45 +127,63 @@ void Localizer::Parts::summarize() {
   predicted_covariance = best.covariance;
 }
 
+// A thinned scan, a different comb of beams each time.
+Beams Localizer::Parts::comb(const LaserScan& scan, const Pose& base_from_laser) const {
+  const int stride = std::max(1, (static_cast<int>(scan.ranges.size()) + config.beams - 1) / config.beams);
+  return beams_of(scan, base_from_laser, weighed % stride, stride);
+}
+
 // The beams to weigh the samples by: those that did not surely meet somebody, and some that nobody asks about.
-std::vector<Beam> Localizer::Parts::trusted(const Beams& beams) {
+std::vector<Point> Localizer::Parts::trusted_ends(const Beams& beams) {
   const std::vector<Pose> belief = filter.draw(config.filter_samples, random.uniform());
-  std::vector<Beam> result;
+  std::vector<Point> result;
   for (const Beam& beam : beams.beams) {
     const bool untested = random.chance(config.unfiltered_share);
-    if (untested || !reader.is_short(beam, beams.origin, belief)) result.push_back(beam);
+    if (untested || !reader.is_short(beam, beams.origin, belief)) result.push_back(beam.end);
   }
   return result;
 }
 
-void Localizer::Parts::weigh(const LaserScan& scan, const Pose& base_from_laser, bool resting) {
-  // A different comb of beams each time.
-  const int stride = std::max(1, (static_cast<int>(scan.ranges.size()) + config.beams - 1) / config.beams);
-  const Beams comb = beams_of(scan, base_from_laser, weighed % stride, stride);
-  std::vector<Point> ends;
-  for (const Beam& beam : trusted(comb)) ends.push_back(beam.end);
+void Localizer::Parts::weigh(const Beams& beams, double temper) {
+  const std::vector<Point> ends = trusted_ends(beams);
+  const Cluster before = filter.clusters().front();
+  // Beyond the map's rim chance hits would pull the belief back: there the wheels know better.
+  const auto telling = std::count_if(ends.begin(), ends.end(), [&](Point e) { return field.tells(before.mean * e); });
+  const double known = ends.empty() ? 0.0 : static_cast<double>(telling) / static_cast<double>(ends.size());
+  if (larger_axis(before.covariance) < 1.0) temper *= known * known;
   const bool searching = !localized || larger_axis(best.covariance) > 0.3;
   field.set_hit_sigma(config.likelihood.hit_sigma * (searching ? 2.0 : 1.0));
   const Particles& particles = filter.particles();
-  const Eigen::Matrix3d predicted = filter.clusters().front().covariance;
   std::vector<float> log_likelihood(particles.size());
   field.weigh(particles.x, particles.y, particles.theta, ends, log_likelihood);
-  if (resting) {
-    for (auto& value : log_likelihood) value *= static_cast<float>(config.rest_temper);
-  }
+  for (auto& value : log_likelihood) value *= static_cast<float>(temper);
   filter.weigh(log_likelihood);
   summarize();
-  if (modes <= 1) predicted_covariance = predicted;
+  if (modes <= 1) predicted_covariance = before.covariance;
   filter.resample_when_uneven();
-  doubt(comb, ends);
-  weighed_at = scan.time;
   ++weighed;
+}
+
+// All that a scan does to the belief.
+void Localizer::Parts::take_in(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom, double temper) {
+  const Beams beams = comb(scan, base_from_laser);
+  advance(odom);
+  weigh(beams, temper);
+  weighed_at = scan.time;
+  const bool agrees = refine(scan, base_from_laser, odom);
+  if (agrees && larger_axis(covariance) < 0.3) {
+    filter.infuse({pose, larger_axis(covariance), heading_sigma(covariance), 1.0}, config.match_share);
+  }
+  doubt(beams, read(scan, pose * base_from_laser));
+}
+
+ScanReading Localizer::Parts::read(const LaserScan& scan, const Pose& map_from_laser) const {
+  return reader.read(scan, map_from_laser, larger_axis(covariance), heading_sigma(covariance));
 }
 
 // The estimate between the samples: the scan aligned with the map, held by the belief. False when the scan fits well
 // only where the belief is not.
-bool Localizer::Parts::refine(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom,
-                              bool freshly_weighed) {
+bool Localizer::Parts::refine(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom) {
   const Pose predicted = best.mean * relative(*odom_then, odom);
   const Eigen::Matrix3d prior = with_floor(predicted_covariance, 0.01, 0.005);
   pose = predicted;
@@ -171,10 +192,10 @@ bool Localizer::Parts::refine(const LaserScan& scan, const Pose& base_from_laser
   if (larger_axis(best.covariance) > 0.5) return true;
   const int stride = std::max(1, (static_cast<int>(scan.ranges.size()) + 180) / 181);
   Beams beams = beams_of(scan, base_from_laser, 0, stride);
-  const ScanReading reading =
-      reader.read(scan, predicted * base_from_laser, larger_axis(covariance), heading_sigma(covariance));
-  std::erase_if(beams.beams,
-                [&](const Beam& beam) { return reading.kinds[static_cast<std::size_t>(beam.index)] != BeamKind::map; });
+  const ScanReading reading = read(scan, predicted * base_from_laser);
+  std::erase_if(beams.beams, [&](const Beam& beam) {
+    return reading.kinds[static_cast<std::size_t>(beam.index)] != BeamKind::map || !field.tells(predicted * beam.end);
+  });
   if (beams.beams.size() < 10) return true;
   const ScanMatch match =
       match_scan(field.distances(), field.surface_offset(), beams.beams, predicted, prior, config.match);
@@ -184,19 +205,17 @@ bool Localizer::Parts::refine(const LaserScan& scan, const Pose& base_from_laser
   pose = match.pose;
   covariance = with_floor(match.covariance, 0.01, 0.003);
   learn_offset(match);
-  if (freshly_weighed) {
-    filter.infuse({pose, larger_axis(covariance), heading_sigma(covariance), 1.0}, config.match_share);
-  }
   return true;
 }
 
-// Augmented MCL (Thrun et al., "Probabilistic Robotics", table 8.3) with a local proposal: when the trusted beams fit
-// far worse than they used to, some samples are drawn where the scan would fit. They stay if the next scans agree.
-void Localizer::Parts::doubt(const Beams& beams, std::span<const Point> trusted_ends) {
-  if (trusted_ends.size() < 10 || larger_axis(best.covariance) > 0.5) return;
-  const double fit = field.log_likelihood(best.mean, trusted_ends) / static_cast<double>(trusted_ends.size());
-  if (fit > usual_fit - config.doubt_below) {
-    usual_fit += 0.02 * (fit - usual_fit);
+// Augmented MCL (Thrun et al., "Probabilistic Robotics", table 8.3) with a local proposal: when more beams than usual
+// are longer than the map allows, which people cannot cause, some samples are drawn where the scan would fit. They stay
+// if the next scans agree.
+void Localizer::Parts::doubt(const Beams& beams, const ScanReading& reading) {
+  const double far = count_beams(reading).far_share();
+  if (larger_axis(best.covariance) > 0.5 || beams.beams.size() < 10) return;
+  if (far < usual_far + config.doubt_above) {
+    usual_far += 0.02 * (far - usual_far);
     return;
   }
   const Pose nearby = search_nearby(field, beams.beams, best.mean, config.match).pose;
@@ -214,7 +233,7 @@ void Localizer::Parts::learn_offset(const ScanMatch& match) {
 }
 
 void Localizer::Parts::judge_state(const ScanReading& reading) {
-  judge.observe(count_kinds(reading.kinds));
+  judge.observe(count_beams(reading));
   const double metres = larger_axis(best.covariance), angle = heading_sigma(best.covariance);
   if (localized) {
     localized = !judge.lost() && best.mass > 0.7 && metres < 0.8;
@@ -357,14 +376,9 @@ ScanReading Localizer::update(const LaserScan& scan, const Pose& base_from_laser
   const Seconds patience = p.localized ? p.config.update_after_rest : 0.2 * p.config.update_after_rest;
   bool due = !resting || scan.time - p.weighed_at >= patience;
   // A scan that does not fit where the robot should be by now is not put off: the wheels may have slipped.
-  if (!due) due = !p.refine(scan, base_from_laser, odom, false);
-  if (due) {
-    p.advance(odom);
-    p.weigh(scan, base_from_laser, resting);
-    p.refine(scan, base_from_laser, odom, true);
-  }
-  ScanReading reading =
-      p.reader.read(scan, p.pose * base_from_laser, larger_axis(p.covariance), heading_sigma(p.covariance));
+  if (!due) due = !p.refine(scan, base_from_laser, odom);
+  if (due) p.take_in(scan, base_from_laser, odom, resting ? p.config.rest_temper : 1.0);
+  ScanReading reading = p.read(scan, p.pose * base_from_laser);
   reading.weighed = due;
   if (due) p.judge_state(reading);
   return reading;
