@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "robot/geometry/pose.hpp"
+#include "robot/time.hpp"
 
 namespace robot::simulation {
 
@@ -45,5 +47,12 @@ inline std::array<Point, 2> legs(const Person& person) {
   return {person.position + Point{c * reach - s * half, s * reach + c * half},
           person.position + Point{-c * reach + s * half, -s * reach - c * half}};
 }
+
+// What can be seen at a moment, by value: pictures are made of it, on any thread.
+struct Snapshot {
+  Time time;
+  Pose robot;  // map_from_base
+  std::vector<Person> people;
+};
 
 }  // namespace robot::simulation

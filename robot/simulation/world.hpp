@@ -31,13 +31,6 @@ struct WorldConfig {
   SensorNoise sensors{};
 };
 
-// What can be seen at a moment, by value: pictures are made of it, on any thread.
-struct Snapshot {
-  Time time;
-  Pose robot;  // map_from_base
-  std::vector<Person> people;
-};
-
 class World {
  public:
   World(const Museum& museum, const Body& body, const WorldConfig& config, std::uint64_t seed);
