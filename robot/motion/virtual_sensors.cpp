@@ -123,7 +123,8 @@ VirtualReadings VirtualSensors::read(std::span<const Pose> samples) const {
     const Point ahead{std::cos(angle), std::sin(angle)};
     nearest.assign(spare + 1, config_.max_range + config_.trust);
     for (const Seat& seat : seats) {
-      if (seat.distance >= nearest.back()) break;  // neither this one nor those after it can be nearer
+      if (seat.distance - distance_.resolution() >= nearest.back())
+        break;  // neither this one nor those after it can be nearer
       const Point direction{dot(ahead, {seat.heading.x, -seat.heading.y}),
                             dot(ahead, {seat.heading.y, seat.heading.x})};
       const double range = cast(seat.pose.position(), direction, nearest.back());
