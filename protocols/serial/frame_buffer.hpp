@@ -17,6 +17,8 @@ class FrameBuffer {
   };
 
   void feed(ByteSpan bytes) {
+    if (bytes.empty()) return;
+    silent_ = false;
     if (begin_ > 0) {
       bytes_.erase(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(begin_));
       begin_ = 0;
@@ -40,12 +42,11 @@ class FrameBuffer {
       ++begin_;
       ++counts_.skipped_bytes;
     }
-    silent_ = false;
     return {};
   }
 
   // The sender paused in the middle: what looked like the start of a long frame was none. Call next() afterwards.
-  void line_fell_silent() { silent_ = begin_ < bytes_.size(); }
+  void line_fell_silent() { silent_ = true; }
 
   const FrameCounts& counts() const { return counts_; }
   FrameCounts& counts() { return counts_; }
