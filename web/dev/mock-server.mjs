@@ -324,8 +324,10 @@ const server = createServer(async (q, a) => {
         end(r, "cancelled");
         return json(200, pub(r, session));
       }
+      case "GET tours/current": return status().tour ? json(200, { tour, ...status().tour, exhibit: status().exhibit, requester: "" }) : problem(404, "no_tour", "no tour");
       case "POST tours/current":
         tour = sent.tour;
+        for (const r of queue) if (r.state === "active" || r.state === "pending") end(r, "cancelled");
         for (const id of exhibitsOf(sent.tour)) add({ name: sent.name ?? "", exhibit: id, tour: sent.tour, channel: "kiosk", session });
         return json(201, { tour, stop: 1, stops: exhibitsOf(tour).length, exhibit: exhibitsOf(tour)[0], requester: sent.name ?? "" });
       case "DELETE tours/current":

@@ -19,7 +19,7 @@ export function themeSwitch() {
 
 export function languageSwitch(long = false) {
   const w = t();
-  const one = (lang: Lang, short: string, name: string) => html`<button lang=${lang} aria-pressed=${w.lang === lang} aria-label=${name}
+  const one = (lang: Lang, short: string, name: string) => html`<button lang=${lang} aria-pressed=${w.lang === lang} aria-label=${long ? name : `${short}: ${name}`}
     @click=${() => setPrefs({ lang })}>${long ? name : short}</button>`;
   return html`<div class=${long ? "lang" : "seg"} role="group" aria-label=${w.language}>${one("en", "EN", w.english)}${one("de", "DE", w.german)}</div>`;
 }
