@@ -25,7 +25,7 @@ Polygon corners(const Footprint& f, const Pose& map_from_base) {
 Nearest nearest_place(const Footprint& f, const Pose& map_from_base, Point point) {
   const Point local = inverse(map_from_base) * point;
   const Point inside{std::clamp(local.x, -f.rear, f.front), std::clamp(local.y, -f.half_width, f.half_width)};
-  return {map_from_base * inside, distance(inside, local)};
+  return {map_from_base * inside, length(inside - local)};
 }
 
 std::optional<Point> touched_wall(const Footprint& f, const Pose& map_from_base, const Walls& walls) {
@@ -63,18 +63,33 @@ bool overlaps(const Footprint& f, const Pose& map_from_base, const Polygon& poly
   return false;
 }
 
-std::optional<TouchedHazard> touched_hazard(const Footprint& f, const Pose& map_from_base, const Museum& museum) {
+Hazards::Hazards(const Museum& museum) : boundary_(museum.boundary) {
   for (const auto& hazard : museum.hazards) {
+    if (hazard.polygon.empty()) continue;
+    Point low = hazard.polygon.front(), high = low;
+    for (const Point p : hazard.polygon) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    areas_.push_back({hazard, low, high});
+  }
+}
+
+std::optional<TouchedHazard> Hazards::touched(const Footprint& f, const Pose& map_from_base) const {
+  const double reach = f.circumscribed();
+  const Point p = map_from_base.position();
+  for (const auto& [hazard, low, high] : areas_) {
+    if (p.x < low.x - reach || p.x > high.x + reach || p.y < low.y - reach || p.y > high.y + reach) continue;
     if (!overlaps(f, map_from_base, hazard.polygon)) continue;
     const bool solid = hazard.kind == HazardKind::glass || hazard.kind == HazardKind::low_obstacle;
-    return TouchedHazard{hazard.id, map_from_base.position(), solid};
+    return TouchedHazard{hazard.id, p, solid};
   }
-  if (museum.boundary.empty()) return std::nullopt;
+  if (boundary_.empty()) return std::nullopt;
   const Polygon box = corners(f, map_from_base);
   for (const Point corner : box) {
-    if (!contains(museum.boundary, corner)) return TouchedHazard{"boundary", corner, false};
+    if (!contains(boundary_, corner)) return TouchedHazard{"boundary", corner, false};
   }
-  for (const Point corner : museum.boundary) {
+  for (const Point corner : boundary_) {
     if (contains(box, corner)) return TouchedHazard{"boundary", corner, false};
   }
   return std::nullopt;
@@ -86,8 +101,8 @@ bool robot_at_fault(const Footprint& f, const Pose& map_from_base, Twist ground,
   const double c = std::cos(map_from_base.theta), s = std::sin(map_from_base.theta);
   const Point body{ground.linear * c - ground.angular * arm.y, ground.linear * s + ground.angular * arm.x};
   const Point apart = person.position - touch.place;
-  const double length = norm(apart);
-  const Point normal = length > 1e-6 ? (1.0 / length) * apart : Point{c, s};
+  const double gap = length(apart);
+  const Point normal = gap > 1e-6 ? (1.0 / gap) * apart : Point{c, s};
   const double robot_closing = dot(body, normal), person_closing = -dot(velocity, normal);
   return robot_closing > 0.02 && robot_closing >= person_closing;
 }

@@ -48,8 +48,19 @@ struct TouchedHazard {
   Point place;
   bool solid;  // it holds the body: glass, plates
 };
-std::optional<TouchedHazard> touched_hazard(const Footprint& footprint, const Pose& map_from_base,
-                                            const Museum& museum);
+class Hazards {
+ public:
+  explicit Hazards(const Museum& museum);
+  std::optional<TouchedHazard> touched(const Footprint& footprint, const Pose& map_from_base) const;
+
+ private:
+  struct Area {
+    Hazard hazard;
+    Point low, high;  // corners of the box round it
+  };
+  std::vector<Area> areas_;
+  Polygon boundary_;
+};
 
 // Fault of the robot: its body moved towards the person at the place of contact, faster than 2 cm/s and not slower than
 // the person towards it.

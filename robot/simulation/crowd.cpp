@@ -22,7 +22,9 @@ Temper draw_temper(Random& random) {
 }
 
 double turn_towards(double heading, double wanted, double most) {
-  return wrap_angle(heading + std::clamp(wrap_angle(wanted - heading), -most, most));
+  const double off = wanted - heading;
+  if (std::abs(off) <= most) return wanted;
+  return wrap_angle(heading + std::clamp(wrap_angle(off), -most, most));
 }
 
 }  // namespace
@@ -86,7 +88,7 @@ void Crowd::step(double dt, const RobotSeen& robot) {
 void Crowd::move(std::size_t i, Point acceleration, double dt, const RobotSeen& robot) {
   Person& person = people_[i];
   person.velocity = person.velocity + dt * acceleration;
-  const double speed = norm(person.velocity);
+  const double speed = length(person.velocity);
   if (speed > max_speed) person.velocity = (max_speed / speed) * person.velocity;
   Point next = person.position + dt * person.velocity;
   const double clearance = walls_.clearance(next);
@@ -100,7 +102,7 @@ void Crowd::move(std::size_t i, Point acceleration, double dt, const RobotSeen& 
       person.velocity = {};
     }
   }
-  if (!minds_[i].distracted && distance(next, robot.pose.position()) < 1.5) {
+  if (!minds_[i].distracted && length(next - robot.pose.position()) < 1.5) {
     const Nearest touch = nearest_place(robot.footprint, robot.pose, next);
     if (touch.distance < person.radius + margin && touch.distance > 1e-6) {
       const Point away = (1.0 / touch.distance) * (next - touch.place);
@@ -113,10 +115,10 @@ void Crowd::move(std::size_t i, Point acceleration, double dt, const RobotSeen& 
     }
   }
   person.position = next;
-  const double walking = norm(person.velocity);
-  const double facing = walking > 0.25 ? std::atan2(person.velocity.y, person.velocity.x) : minds_[i].gaze;
-  person.heading = turn_towards(person.heading, facing, 4.0 * dt);
-  person.stride = wrap_angle(person.stride + dt * (walking < 0.05 ? 0.0 : 2.0 + 4.5 * walking));
+  const double walking = length(person.velocity);
+  person.heading = turn_towards(person.heading, minds_[i].gaze, 4.0 * dt);
+  if (walking > 0.05) person.stride += dt * (2.0 + 4.5 * walking);
+  if (person.stride > pi) person.stride -= 2.0 * pi;
 }
 
 }  // namespace robot::simulation

@@ -18,8 +18,8 @@ constexpr double look_ahead = 0.7;                            // s in which peop
 constexpr double max_push = 8.0;                              // m/s2
 
 Point limited(Point a, double most) {
-  const double length = norm(a);
-  return length > most ? (most / length) * a : a;
+  const double size = length(a);
+  return size > most ? (most / size) * a : a;
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ Point Crowd::push_of_people(std::size_t i) const {
   const Person& person = people_[i];
   const int column = cell_of_[i] % columns_, row = cell_of_[i] / columns_;
   const Point ahead{std::cos(person.heading), std::sin(person.heading)};
-  const bool walking = norm(minds_[i].wanted) > 0.2;
+  const bool walking = length(minds_[i].wanted) > 0.2;
   Point sum;
   for (int y = std::max(0, row - 1); y <= std::min(rows_ - 1, row + 1); ++y) {
     const auto first = static_cast<std::size_t>(y * columns_ + std::max(0, column - 1));
@@ -88,7 +88,7 @@ Point Crowd::push_of_walls(const Person& person) const {
 
 Point Crowd::push_of_robot(std::size_t i, const RobotSeen& robot) const {
   const Person& person = people_[i];
-  const double near = distance(person.position, robot.pose.position());
+  const double near = length(person.position - robot.pose.position());
   if (near > 3.0 || minds_[i].distracted) return {};
   double strength = 4.0, reach = 0.25;
   if (person.doing == Doing::blocking || person.doing == Doing::crowding) strength = 2.0, reach = 0.10;
@@ -98,8 +98,8 @@ Point Crowd::push_of_robot(std::size_t i, const RobotSeen& robot) const {
     const Nearest touch = nearest_place(robot.footprint, pose, person.position);
     const double d = touch.distance;
     const Point apart = d > 1e-6 ? person.position - touch.place : person.position - pose.position();
-    const double length = std::max(1e-6, norm(apart));
-    return (weight * strength * std::exp((person.radius - d) / reach) / length) * apart;
+    const double far = std::max(1e-6, length(apart));
+    return (weight * strength * std::exp((person.radius - d) / reach) / far) * apart;
   };
   const Point now = from(robot.pose, 1.0);
   if (std::abs(robot.twist.linear) < 0.05 && std::abs(robot.twist.angular) < 0.1) return now;

@@ -34,6 +34,7 @@ bool with_robot(Doing doing) {
 void Crowd::think(std::size_t i, double dt, const RobotSeen& robot) {
   Person& person = people_[i];
   Mind& mind = minds_[i];
+  if (length(person.velocity) > 0.25) mind.gaze = std::atan2(person.velocity.y, person.velocity.x);
   if (mind.distracted && random_.chance(0.05 * dt)) mind.distracted = false;
   if (now_ < mind.aside_until) return go(i, mind.aside, 1.0, 0.2);
   make_room(i, dt, robot);
@@ -47,7 +48,7 @@ void Crowd::think(std::size_t i, double dt, const RobotSeen& robot) {
       break;
     case Doing::running:
       go(i, mind.spot, 2.1, 0.5);
-      if (distance(person.position, mind.spot) < 0.8) {
+      if (length(person.position - mind.spot) < 0.8) {
         const double angle = random_.uniform(-pi, pi), far = random_.uniform(3.0, 8.0);
         const Point next = person.position + far * Point{std::cos(angle), std::sin(angle)};
         if (routes_.passable(next)) mind.spot = next;
@@ -85,13 +86,13 @@ void Crowd::stroll(std::size_t i) {
   Person& person = people_[i];
   Mind& mind = minds_[i];
   const double way = routes_.way(mind.destination, person.position);
-  const double left = distance(person.position, mind.spot);
+  const double left = length(person.position - mind.spot);
   const bool close = way < 0.1 || left < 2.0;
   if (routes_.exhibits() == 0 || (close && left < 6.0)) {
     go(i, mind.spot, mind.pace, 0.5);
   } else {
     mind.wanted = mind.pace * routes_.direction(mind.destination, person.position);
-    if (norm(mind.wanted) < 0.1) go(i, mind.spot, mind.pace, 0.5);
+    if (length(mind.wanted) < 0.1) go(i, mind.spot, mind.pace, 0.5);
   }
   if (left > 0.5 && now_ < mind.until) return;
   if (person.doing == Doing::leaving) return enter(i, routes_.spot(routes_.entrance(), random_));
@@ -132,7 +133,7 @@ void Crowd::finish(std::size_t i) {
 void Crowd::notice_robot(std::size_t i, double dt, const RobotSeen& robot) {
   Person& person = people_[i];
   Mind& mind = minds_[i];
-  const double d = distance(person.position, robot.pose.position());
+  const double d = length(person.position - robot.pose.position());
   if (d > notice_within || now_ < mind.interest_from || mind.distracted || person.doing == Doing::leaving) return;
   const double a_second = person.temper == Temper::curious ? 0.12 : person.temper == Temper::regular ? 0.025 : 0.0;
   if (!random_.chance(a_second * dt)) return;
@@ -147,7 +148,7 @@ void Crowd::attend_robot(std::size_t i, double dt, const RobotSeen& robot) {
   Person& person = people_[i];
   Mind& mind = minds_[i];
   const Point to = robot.pose.position() - person.position;
-  const double d = norm(to);
+  const double d = length(to);
   mind.gaze = std::atan2(to.y, to.x);
   if (now_ > mind.until || d > lose_interest) {
     mind.interest_from = now_ + 40.0 + exponential(random_, 90.0);
@@ -189,7 +190,7 @@ void Crowd::make_room(std::size_t i, double dt, const RobotSeen& robot) {
   Mind& mind = minds_[i];
   const double gap = nearest_place(robot.footprint, robot.pose, person.position).distance;
   const bool before_it = gap < in_the_way && std::abs(bearing_from(robot, person.position)) < 0.7;
-  if (!before_it || norm(person.velocity) > 0.6) {
+  if (!before_it || length(person.velocity) > 0.6) {
     mind.blocked_for = std::max(0.0, mind.blocked_for - dt);
     return;
   }
@@ -231,7 +232,7 @@ void Crowd::hear(Cue cue, const RobotSeen& robot) {
   for (std::size_t i = 0; i < people_.size(); ++i) {
     Person& person = people_[i];
     Mind& mind = minds_[i];
-    const double d = distance(person.position, robot.pose.position());
+    const double d = length(person.position - robot.pose.position());
     if (d > (asks ? ear_shot : notice_within)) continue;
     mind.distracted = false;
     if (asks) {
@@ -253,7 +254,7 @@ void Crowd::hear(Cue cue, const RobotSeen& robot) {
 // Towards a place, slowing down within `arrive` metres of it.
 void Crowd::go(std::size_t i, Point target, double pace, double arrive) {
   const Point to = target - people_[i].position;
-  const double d = norm(to);
+  const double d = length(to);
   minds_[i].wanted = d < 0.1 ? Point{} : (pace * std::min(1.0, d / arrive) / d) * to;
 }
 

@@ -32,12 +32,13 @@ double to_segment(Point from, double cosine, double sine, Point a, Point b) {
 
 // Shortens the beams that meet a circle given in the laser's frame; touches no others.
 void meet_circle(LaserScan& scan, Point center, double radius, auto&& direction) {
-  const double d = norm(center);
+  const double d = length(center);
   const int beams = static_cast<int>(scan.ranges.size());
   int first = 0, last = beams - 1;
   if (d > radius) {
     const double half = std::asin(radius / d);
-    const double bearing = wrap_angle(std::atan2(center.y, center.x) - scan.angle_min);
+    double bearing = std::atan2(center.y, center.x) - scan.angle_min;
+    if (bearing > pi) bearing -= 2.0 * pi;
     // A full turn's scan may meet the circle across its seam; half-turn scans never do.
     first = static_cast<int>(std::ceil((bearing - half) / scan.angle_step));
     last = static_cast<int>(std::floor((bearing + half) / scan.angle_step));
@@ -85,9 +86,11 @@ LaserScan Sensors::scan(LaserId id, const Walls& walls, std::span<const Person> 
   }
   const Pose laser_from_map = inverse(map_from_laser);
   const auto direction = [&](int i) { return table[static_cast<std::size_t>(i)]; };
+  const bool looks_ahead = mount.angle_min > -0.51 * pi && mount.angle_min + mount.beams * mount.angle_step < 0.51 * pi;
   for (const auto& person : people) {
     const Point to = person.position - map_from_laser.position();
     if (dot(to, to) > mount.max_range * mount.max_range) continue;
+    if (looks_ahead && c * to.x + s * to.y < -1.0) continue;  // behind the laser, legs and all
     for (const Point leg : legs(person)) meet_circle(scan, laser_from_map * leg, leg_radius, direction);
   }
   for (float& range : scan.ranges) {
@@ -118,7 +121,7 @@ double Sensors::echo(const SonarMount& mount, const Walls& walls, std::span<cons
   const double cone = std::cos(0.5 * mount.opening_angle);
   for (const auto& person : people) {
     const Point to = person.position - from;
-    const double d = norm(to);
+    const double d = length(to);
     if (d - person.radius >= std::min(nearest, mount.max_range)) continue;
     const double ahead =
         (to.x * std::cos(map_from_sonar.theta) + to.y * std::sin(map_from_sonar.theta)) / std::max(d, 1e-9);

@@ -22,6 +22,7 @@ World::World(const Museum& museum, const Body& body, const WorldConfig& config, 
       body_(body),
       config_(config),
       walls_(museum_.map),
+      hazards_(museum_),
       drive_(body.drive, config.drive, Random(seed * 4 + 1)),
       sensors_(museum_, body, config.sensors, Random(seed * 4 + 2)),
       crowd_(museum_, config.visitors, Random(seed * 4 + 3)),
@@ -80,11 +81,11 @@ void World::move_body() {
   if (!moving) return;
   const bool forward = drive_.ground().linear >= 0.0;
   const auto wall = touched_wall(body_.footprint, next, walls_);
-  const auto hazard = touched_hazard(body_.footprint, next, museum_);
+  const auto hazard = hazards_.touched(body_.footprint, next);
   if (wall) note(ContactKind::fixed, *wall, "map");
   if (hazard) note(ContactKind::hazard, hazard->place, hazard->id);
   const bool held = (wall && !touched_wall(body_.footprint, pose_, walls_)) ||
-                    (hazard && hazard->solid && !touched_hazard(body_.footprint, pose_, museum_));
+                    (hazard && hazard->solid && !hazards_.touched(body_.footprint, pose_));
   bumper_front_ = (wall || (hazard && hazard->solid)) && forward;
   bumper_rear_ = (wall || (hazard && hazard->solid)) && !forward;
   stalled_ = held;
@@ -102,7 +103,8 @@ void World::meet_people() {
   const Twist ground = drive_.ground();
   for (std::size_t i = 0; i < people.size(); ++i) {
     Person& person = people[i];
-    if (distance(person.position, pose_.position()) > 3.0) continue;
+    const Point to = person.position - pose_.position();
+    if (dot(to, to) > 9.0) continue;
     const int id = static_cast<int>(i);
     const double brake = body_.drive.max_deceleration;
     if (inevitable(f, pose_, ground, brake, reaction, person.position, person.radius)) {

@@ -80,6 +80,7 @@ class World {
   Body body_;
   WorldConfig config_;
   Walls walls_;
+  Hazards hazards_;
   Drive drive_;
   Sensors sensors_;
   Crowd crowd_;

@@ -32,15 +32,16 @@ TEST(Contacts, HazardsAndTheBoundaryCount) {
   museum.hazards = {{"stairs", HazardKind::staircase, testing::box(6.0, 4.0, 8.0, 6.0), {}},
                     {"case", HazardKind::glass, testing::box(2.0, 7.0, 3.0, 8.0), {}}};
   museum.boundary = testing::box(1.0, 1.0, 9.0, 9.0);
-  EXPECT_FALSE(touched_hazard(footprint, {5.6, 5.0, 0.0}, museum));
-  const auto stairs = touched_hazard(footprint, {5.75, 5.0, 0.0}, museum);
+  const Hazards hazards(museum);
+  EXPECT_FALSE(hazards.touched(footprint, {5.6, 5.0, 0.0}));
+  const auto stairs = hazards.touched(footprint, {5.75, 5.0, 0.0});
   ASSERT_TRUE(stairs);
   EXPECT_EQ(stairs->id, "stairs");
   EXPECT_FALSE(stairs->solid);
-  const auto glass = touched_hazard(footprint, {2.5, 7.5, 0.3}, museum);
+  const auto glass = hazards.touched(footprint, {2.5, 7.5, 0.3});
   ASSERT_TRUE(glass);
   EXPECT_TRUE(glass->solid);
-  const auto left = touched_hazard(footprint, {1.2, 5.0, 0.0}, museum);
+  const auto left = hazards.touched(footprint, {1.2, 5.0, 0.0});
   ASSERT_TRUE(left);
   EXPECT_EQ(left->id, "boundary");
 }
