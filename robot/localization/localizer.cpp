@@ -278,7 +278,9 @@ void Localizer::Parts::adopt_search() {
     summarize();
     const Pose then = best.mean * relative(*odom_now, search_odom);
     const Peak current = judge_place(caster, field, search.look(), then);
-    if (current.score > best_score - 1.0 && best.mass > 0.5) return;  // nothing better anywhere
+    // Nothing better anywhere, or nowhere any better than chance: what is believed stays, off the map perhaps.
+    const bool better = current.score < best_score - 1.0 && peaks.front().share > config.worth_adopting;
+    if (!better && best.mass > 0.5) return;
     best_score = std::max(best_score, current.score);
     seeds.push_back({best.mean, std::min(0.3, larger_axis(best.covariance) + 0.02),
                      heading_sigma(best.covariance) + 0.01, std::max(0.02, std::exp(current.score - best_score))});

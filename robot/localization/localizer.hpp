@@ -43,6 +43,7 @@ struct LocalizerConfig {
   double surface_offset = 0.0;       // m, see LikelihoodField; where tracking starts from ...
   bool learn_surface_offset = true;  // ... when it may be learned while localized
   Seconds search_again{5.0};         // while lost or not yet localized
+  double worth_adopting = 0.5;       // share of its beams that a place found must explain to replace a belief
 };
 
 struct Estimate {

@@ -59,38 +59,24 @@ int MonteCarlo::wanted(int bins) const {
 
 void MonteCarlo::start(std::span<const Seed> seeds) {
   particles_.resize(0);
-  if (!seeds.empty()) mix_in(seeds, 1.0);
+  const auto most = static_cast<std::size_t>(config_.max_particles);
+  seeds = seeds.first(std::min(seeds.size(), most));
+  double mass = 0.0;
+  for (const auto& seed : seeds) mass += seed.mass;
+  // Seed by seed, not in turn: systematic resampling would beat against an alternating order.
+  for (const auto& seed : seeds) {
+    const std::size_t count = std::min(static_cast<std::size_t>(config_.min_particles), most / seeds.size());
+    const std::size_t first = particles_.size();
+    particles_.resize(first + count);
+    const double w = seed.mass / (mass * static_cast<double>(count));
+    for (std::size_t i = 0; i < count; ++i) particles_.set(first + i, sample(seed, random_), w);
+  }
 }
 
 void MonteCarlo::start_from(std::span<const Pose> poses) {
   const std::size_t count = std::min(poses.size(), static_cast<std::size_t>(config_.max_particles));
   particles_.resize(count);
   for (std::size_t i = 0; i < count; ++i) particles_.set(i, poses[i], 1.0 / static_cast<double>(count));
-}
-
-void MonteCarlo::mix_in(std::span<const Seed> seeds, double share) {
-  if (seeds.empty()) return;
-  // The old samples give way when there is no room: they are thinned to what the maximum leaves over.
-  const auto most = static_cast<std::size_t>(config_.max_particles);
-  const std::size_t a_seed = std::max<std::size_t>(
-      20, std::min<std::size_t>(static_cast<std::size_t>(config_.min_particles), most / 2 / seeds.size()));
-  const std::size_t added = std::min(a_seed * seeds.size(), most / 2);
-  if (particles_.size() + added > most) {
-    before_ = particles_;
-    resample(before_, most - added);
-  }
-  double mass = 0.0;
-  for (const auto& seed : seeds) mass += seed.mass;
-  const double old_share = particles_.size() == 0 ? 0.0 : 1.0 - share;
-  for (auto& w : particles_.weight) w *= old_share;
-  const std::size_t first = particles_.size();
-  particles_.resize(first + added);
-  for (std::size_t k = 0; k < added; ++k) {
-    const Seed& seed = seeds[k % seeds.size()];
-    const std::size_t of_this = (added - k % seeds.size() + seeds.size() - 1) / seeds.size();
-    particles_.set(first + k, sample(seed, random_),
-                   (1.0 - old_share) * seed.mass / mass / static_cast<double>(of_this));
-  }
 }
 
 void MonteCarlo::infuse(const Seed& seed, double share) {

@@ -55,12 +55,10 @@ class MonteCarlo {
  public:
   MonteCarlo(MonteCarloConfig config, Random random);
 
-  // Forgets everything: samples drawn from the seeds.
+  // Forgets everything: samples drawn from the seeds, whose masses must be positive.
   void start(std::span<const Seed> seeds);
   // The same from poses that are given one by one, all of equal weight; at most max_particles are kept.
   void start_from(std::span<const Pose> poses);
-  // Adds other hypotheses; together they get this share (0..1) of the belief's mass.
-  void mix_in(std::span<const Seed> seeds, double share);
 
   // Replaces this share of the samples, drawn blindly, by samples of the seed.
   void infuse(const Seed& seed, double share);
