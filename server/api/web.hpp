@@ -86,8 +86,9 @@ class Web {
   // Web thread. Says farewell to viewers (1001) and closes the port; run the io_context for a moment afterwards.
   void stop();
 
- private:
   class Parts;
+
+ private:
   std::shared_ptr<Parts> parts_;
 };
 

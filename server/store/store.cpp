@@ -81,6 +81,23 @@ bool means_damage(const SQLite::Exception& error) {
 
 }  // namespace
 
+bool means_disk_trouble(const std::exception& error) {
+  const auto* sqlite = dynamic_cast<const SQLite::Exception*>(&error);
+  if (!sqlite) return false;
+  switch (sqlite->getErrorCode()) {
+    case 5:
+    case 6:
+    case 7:
+    case 8:
+    case 10:
+    case 13:
+    case 14:
+      return true;  // BUSY LOCKED NOMEM READONLY IOERR FULL CANTOPEN
+    default:
+      return false;
+  }
+}
+
 Store::Store(const std::string& path, WallSeconds now) {
   if (path != ":memory:" && std::filesystem::path(path).has_parent_path()) {
     std::filesystem::create_directories(std::filesystem::path(path).parent_path());

@@ -61,6 +61,10 @@ struct StoredName {
   std::string name;
 };
 
+// Whether an error of the store lies with the disk (full, failing, read-only, locked) and may pass, not with what was
+// asked.
+bool means_disk_trouble(const std::exception& error);
+
 class Store {
  public:
   // Opens or makes the file (":memory:" for none). A file that is damaged is moved aside and a new one begun; notice()

@@ -19,29 +19,25 @@ class TokenBucket {
 
   // Takes a token, if there is one.
   bool take(Time now) {
-    refill(now);
+    tokens_ = tokens(now);
+    filled_ = now;
     if (tokens_ < 1.0) return false;
     tokens_ -= 1.0;
     return true;
   }
 
   // Whole seconds until there is a token again, at least 1.
-  int wait_seconds(Time now) {
-    refill(now);
-    return std::max(1, static_cast<int>((1.0 - tokens_) / rate_.per_second + 0.999));
+  int wait_seconds(Time now) const {
+    return std::max(1, static_cast<int>((1.0 - tokens(now)) / rate_.per_second + 0.999));
   }
 
   // Nothing is remembered of it: it may be forgotten.
-  bool full(Time now) {
-    refill(now);
-    return tokens_ >= rate_.burst;
-  }
+  bool full(Time now) const { return tokens(now) >= rate_.burst; }
 
  private:
-  void refill(Time now) {
+  double tokens(Time now) const {
     const double seconds = std::chrono::duration<double>(now - filled_).count();
-    tokens_ = std::min(rate_.burst, tokens_ + std::max(0.0, seconds) * rate_.per_second);
-    filled_ = now;
+    return std::min(rate_.burst, tokens_ + std::max(0.0, seconds) * rate_.per_second);
   }
 
   Rate rate_;
