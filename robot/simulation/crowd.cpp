@@ -91,7 +91,7 @@ void Crowd::move(std::size_t i, Point acceleration, double dt, const RobotSeen& 
   const double speed = length(person.velocity);
   if (speed > max_speed) person.velocity = (max_speed / speed) * person.velocity;
   Point next = person.position + dt * person.velocity;
-  const double clearance = walls_.clearance(next);
+  const double clearance = walls_.roomy(next, wall_core + 0.08) ? 1.0 : walls_.clearance(next);
   if (clearance < wall_core + 0.08 && clearance < walls_.clearance(person.position)) {
     const Point away = walls_.away(person.position);
     const double into = dot(person.velocity, away);

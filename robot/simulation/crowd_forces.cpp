@@ -81,6 +81,7 @@ Point Crowd::push_of_people(std::size_t i) const {
 }
 
 Point Crowd::push_of_walls(const Person& person) const {
+  if (walls_.roomy(person.position, person.radius + 5.0 * wall_reach)) return {};
   const double clearance = walls_.clearance(person.position);
   if (clearance > person.radius + 5.0 * wall_reach) return {};
   return (wall_strength * std::exp((person.radius - clearance) / wall_reach)) * walls_.away(person.position);

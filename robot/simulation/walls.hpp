@@ -13,6 +13,10 @@ class Walls {
 
   // Metres to the nearest occupied cell, interpolated (within a few centimetres); 0 inside one and off the map.
   double clearance(Point p) const;
+  // Whether the nearest occupied cell is surely farther off than this; one look, for those in the open.
+  bool roomy(Point p, double metres) const {
+    return distance_.at_or(distance_.cell(p), 0.0f) > metres + 1.5 * distance_.resolution();
+  }
   // Unit vector away from the nearest occupied cell; zero where there is none to get away from.
   Point away(Point p) const;
   // Metres along a unit direction to the first occupied cell; `limit` when none comes before.
