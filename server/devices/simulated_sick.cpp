@@ -46,13 +46,20 @@ SimulatedSick::SimulatedSick(SimulatedSickConfig config, Instant now)
 
 void SimulatedSick::receive(ByteSpan bytes, Instant now) {
   if (booted_) return;  // its self-test hears nothing
-  if (now - last_byte_ > telegram_gap) decoder_.line_fell_silent();
+  if (now - last_byte_ > telegram_gap) {
+    decoder_.line_fell_silent();
+    obey_all(now);
+  }
   last_byte_ = now;
   decoder_.feed(bytes);
-  while (const auto item = decoder_.next()) obey(item->payload, now);
+  obey_all(now);
   if (decoder_.counts().bad_checksums == bad_checksums_) return;
   bad_checksums_ = decoder_.counts().bad_checksums;
   if (!silent_) output_.push_back(sick::nak);
+}
+
+void SimulatedSick::obey_all(Instant now) {
+  while (const auto item = decoder_.next()) obey(item->payload, now);
 }
 
 void SimulatedSick::reply(const Bytes& telegram) {

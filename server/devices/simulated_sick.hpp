@@ -38,6 +38,7 @@ class SimulatedSick : public SimulatedDevice {
   std::uint8_t mode() const { return mode_; }
 
  private:
+  void obey_all(Instant now);
   void obey(serial::ByteSpan payload, Instant now);
   void change_mode(serial::ByteSpan arguments, Instant now);
   bool enter(std::uint8_t mode, serial::ByteSpan arguments);
