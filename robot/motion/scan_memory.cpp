@@ -9,6 +9,10 @@ namespace {
 constexpr double person_reach = 0.5;  // m from a person's centre within which beam ends are theirs
 constexpr double walking = 0.15;      // m/s; slower people count as standing
 
+constexpr double hidden_reach = 0.8;  // m to the side within which hidden points matter
+constexpr Seconds hidden_for{10.0};   // how long they are remembered
+constexpr std::size_t most_hidden = 200;
+
 Pose between(const Odometry& a, const Odometry& b, Time time) {
   const double span = Seconds(b.time - a.time).count();
   const double t = span > 0.0 ? std::clamp(Seconds(time - a.time).count() / span, 0.0, 1.0) : 1.0;
@@ -45,6 +49,7 @@ void ScanMemory::add(const LaserScan& scan) {
   const LaserMount& mount = body_.lasers[id];
   const Pose odom_from_laser = *base * mount.base_from_laser;
   Sweep& sweep = sweeps_[id];
+  remember_hidden(sweep, inverse(*base), scan.time);
   sweep.seen = true;
   sweep.time = scan.time;
   sweep.points.clear();
@@ -53,6 +58,21 @@ void ScanMemory::add(const LaserScan& scan) {
     if (!(range > 0.0) || !(range < mount.max_range)) continue;
     const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_step;
     sweep.points.push_back(odom_from_laser * Point{range * std::cos(angle), range * std::sin(angle)});
+  }
+}
+
+// Beside the body, behind the front laser and ahead of the rear one: the half circles that they see end there.
+bool ScanMemory::hidden(Point p) const {
+  if (body_.lasers.size() < 2) return false;
+  return p.x < body_.lasers[0].base_from_laser.x && p.x > body_.lasers[1].base_from_laser.x &&
+         std::abs(p.y) < hidden_reach;
+}
+
+void ScanMemory::remember_hidden(const Sweep& old, const Pose& base_from_odom, Time now) {
+  std::erase_if(unseen_,
+                [&](const Unseen& u) { return now - u.time > hidden_for || !hidden(base_from_odom * u.point); });
+  for (const Point& p : old.points) {
+    if (unseen_.size() < most_hidden && hidden(base_from_odom * p)) unseen_.push_back({now, p});
   }
 }
 
@@ -66,6 +86,7 @@ std::vector<Point> ScanMemory::points(double reach) const {
       if (dot(seen, seen) <= reach * reach) near.push_back(seen);
     }
   }
+  for (const Unseen& u : unseen_) near.push_back(base_from_odom * u.point);
   return near;
 }
 

@@ -1,4 +1,5 @@
 // The newest sweep of each laser as points, carried along by odometry: what is round the robot now, seen from the base.
+// What slips out of both lasers' sight beside the body, between them, is remembered for a while.
 // Shared by the dynamic window and, in its own copy, by the safety gate.
 #pragma once
 
@@ -43,13 +44,21 @@ class ScanMemory {
     Time time;
     std::vector<Point> points;  // odom frame
   };
+  struct Unseen {
+    Time time;
+    Point point;  // odom frame
+  };
   static constexpr std::size_t history = 32;
+
+  bool hidden(Point base_point) const;
+  void remember_hidden(const Sweep& old, const Pose& base_from_odom, Time now);
 
   Body body_;
   std::array<Odometry, history> odometry_{};  // ring
   std::size_t count_ = 0;
   Odometry newest_;
   std::array<Sweep, 2> sweeps_;
+  std::vector<Unseen> unseen_;
 };
 
 // Gives points near tracked people those people's motion; all others stand still.

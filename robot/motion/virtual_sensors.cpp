@@ -140,12 +140,15 @@ VirtualReadings VirtualSensors::read(std::span<const Pose> samples) const {
   return readings;
 }
 
+bool leads_outward(const VirtualReadings& readings, const Twist& twist) {
+  if (twist.linear == 0.0) return true;  // turning towards the way out is always possible
+  return (twist.linear > 0.0 ? readings.outward.x : -readings.outward.x) > outward_at_least;
+}
+
 double time_to_hazard(const VirtualReadings& readings, const PointColumns& points, const Footprint& footprint,
                       const Twist& twist) {
   if (readings.clearance > footprint.inscribed()) return time_to_contact(footprint, points, twist);
-  if (twist.linear == 0.0) return no_contact;  // turning towards the way out is always possible
-  const double out = twist.linear > 0.0 ? readings.outward.x : -readings.outward.x;
-  return out > outward_at_least ? no_contact : 0.0;
+  return leads_outward(readings, twist) ? no_contact : 0.0;
 }
 
 }  // namespace robot

@@ -46,6 +46,9 @@ class VirtualSensors {
   bool has_hazards_ = false;
 };
 
+// Does a motion lead out of a hazard that the robot is in, or turn on the spot?
+bool leads_outward(const VirtualReadings& readings, const Twist& twist);
+
 // Seconds until a constant twist brings the footprint onto a hazard (see time_to_contact; points are the readings'
 // own). When the base's centre is nearer to a hazard than the footprint is wide, or inside, only turning and outward
 // motion are admissible: a hazard stops the robot but never traps it.
