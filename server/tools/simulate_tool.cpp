@@ -2,10 +2,13 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "protocols/files/site_file.hpp"
 #include "robot/robot.hpp"
+#include "robot/simulation/painter.hpp"
 #include "robot/simulation/world.hpp"
+#include "server/stream/jpeg.hpp"
 #include "server/tools/report.hpp"
 #include "server/tools/simulated_public.hpp"
 #include "server/tools/simulation_statistics.hpp"
@@ -45,7 +48,9 @@ class Deployment {
   Deployment(const robot::Museum& museum, const SimulateOptions& options)
       : world_(museum, robot::standard_body(), {.visitors = options.visitors}, options.seed),
         robot_(museum, config_for(museum, options)),
-        public_(world_.museum(), {.requests_per_hour = options.requests_per_hour}, options.seed * 3 + 2) {}
+        public_(world_.museum(), {.requests_per_hour = options.requests_per_hour}, options.seed * 3 + 2) {
+    if (options.cameras) painter_.emplace(world_.museum());
+  }
 
   void run(robot::Time until) {
     feed({world_.now(), robot::SetMode{robot::Mode::open}});
@@ -53,6 +58,7 @@ class Deployment {
       const auto events = world_time_.time([&] { return world_.advance(world_.now() + slice); });
       statistics_.see_truth(world_.now(), world_.truth(), world_.twist());
       for (const auto& event : events) feed(event);
+      if (painter_ && i % slices_per_frame == 0) camera_time_.time([&] { take_pictures(); });
       if (i % slices_per_tick == 0) {
         for (auto& wish : public_.wishes(world_.now())) feed({world_.now(), std::move(wish)});
         feed({world_.now(), robot::Tick{}});
@@ -66,6 +72,10 @@ class Deployment {
     report["realtime_factor"] = simulated / wall_seconds;
     report["wall_s"] = wall_seconds;
     report["cpu_s"] = {{"world", world_time_.seconds()}, {"robot", robot_time_.seconds()}};
+    if (painter_) {
+      report["cpu_s"]["cameras"] = camera_time_.seconds();
+      report["pictures"] = {{"count", pictures_}, {"jpeg_bytes", jpeg_bytes_}};
+    }
     return report;
   }
 
@@ -75,6 +85,18 @@ class Deployment {
     if (!options.find_itself) config.start = museum.home;
     config.seed = options.seed;
     return config;
+  }
+
+  // What viewers would be sent: the robot's eyes and the first wall camera.
+  void take_pictures() {
+    const auto moment = world_.snapshot();
+    const auto take = [&](const robot::simulation::CameraView& view) {
+      const auto image = painter_->render(view, moment);
+      jpeg_bytes_ += server::encode_jpeg(image.rgb, image.width, image.height).size();
+      ++pictures_;
+    };
+    take(robot::simulation::onboard_view(moment.robot));
+    if (!world_.museum().cameras.empty()) take(robot::simulation::wall_view(world_.museum().cameras.front()));
   }
 
   void feed(const robot::Input& input) {
@@ -92,7 +114,9 @@ class Deployment {
   robot::Robot robot_;
   SimulatedPublic public_;
   SimulationStatistics statistics_;
-  Stopwatch world_time_, robot_time_;
+  std::optional<robot::simulation::Painter> painter_;
+  std::size_t pictures_ = 0, jpeg_bytes_ = 0;
+  Stopwatch world_time_, robot_time_, camera_time_;
 };
 
 }  // namespace
@@ -118,6 +142,7 @@ void add_simulate_command(CLI::App& app) {
   command->add_option("--report", options->report, "file for the JSON report; - is standard output");
   command->add_option("--requests-per-hour", options->requests_per_hour, "wishes of web and kiosk visitors")
       ->check(CLI::Range(0.0, 3600.0));
+  command->add_flag("--cameras", options->cameras, "paint and encode the pictures of two cameras five times a second");
   command->add_flag("--find-itself", options->find_itself, "the robot is not told where it starts");
   command->callback([options] {
     run_command("simulate", [&] {
