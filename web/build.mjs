@@ -51,7 +51,7 @@ for (const [html, page] of Object.entries(pages)) {
   const style = outputOf(`src/style/${page}.css`);
   const scripts = [...withImports(script)];
   const preload = scripts.slice(1).map((s) => `<link rel="modulepreload" href="${url(s)}">`);
-  const fonts = outputs.filter(([f]) => /(cantarell-400|cantarell-700|vollkorn-400)-.*woff2$/.test(f))
+  const fonts = outputs.filter(([f]) => /(cantarell-400|cantarell-700|vollkorn-400|vollkorn-600)-.*woff2$/.test(f))
     .map(([f]) => `<link rel="preload" href="${url(f)}" as="font" type="font/woff2" crossorigin>`);
   const head = [...fonts, `<link rel="stylesheet" href="${url(style)}">`, ...preload, `<script type="module" src="${url(script)}"></script>`];
   const text = readFileSync(join(here, "src/pages", `${page}.html`), "utf8").replace("<!-- assets -->", head.join("\n"));

@@ -36,7 +36,7 @@ describe("the console", { skip: cannotRun(), timeout: 180_000 }, () => {
   it("shows health, mode, belief and cameras", async () => {
     const { page, context, errors } = await open();
     await page.waitForFunction(() => document.querySelectorAll(".health li").length >= 3);
-    assert.equal(await page.locator(".modes input:checked").count(), 1);
+    await page.waitForSelector(".modes input:checked");
     await page.waitForFunction(() => document.querySelectorAll("docent-cameras canvas.has-picture").length >= 1);
     assert.deepEqual(await seriousFindings(page), []);
     assert.deepEqual(errors, []);

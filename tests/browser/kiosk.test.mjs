@@ -39,7 +39,7 @@ describe("the kiosk", { skip: cannotRun(), timeout: 2 * arrival }, () => {
 
   it("keeps all that is touched in the lower half, large enough", async () => {
     const { page, context } = await open();
-    for (const step of [".huge", ".choice:not([data-tour])"]) {
+    for (const step of [".huge", "[data-one]"]) {
       await page.waitForSelector(step);
       const targets = await page.$$eval("button:not([inert]):not(.badge)", (list) => list.map((b) => b.getBoundingClientRect()).map((b) => ({ top: b.top, width: b.width, height: b.height })));
       for (const target of targets) {

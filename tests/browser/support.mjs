@@ -55,9 +55,9 @@ export class Server {
   async start() {
     const [program, args] = mock
       ? [process.execPath, [join(root, "web/dev/mock-server.mjs"), String(this.port)]]
-      : [binary, ["serve", "--site", site, "--port", String(this.port), ...this.more]];
+      : [binary, ["serve", "--site", site, "--port", String(this.port), "--database", join(this.folder, "docent.sqlite"), "--start", "home", ...this.more]];
     this.output = "";
-    this.process = spawn(program, args, { cwd: this.folder, stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, DOCENT_STATE: this.folder } });
+    this.process = spawn(program, args, { cwd: root, stdio: ["ignore", "pipe", "pipe"] });
     for (const stream of [this.process.stdout, this.process.stderr]) stream.on("data", (text) => (this.output = (this.output + text).slice(-8000)));
     for (let k = 0; k < 300; k++) {
       if (this.process.exitCode !== null) throw new Error(`the server ended:\n${this.output}`);

@@ -103,7 +103,7 @@ class DocentConsole extends LitElement {
           ${themeSwitch()}${languageSwitch()}</div>
         <div class="stopbox">${this.stopPart()}</div></header>
       ${this.known && !s.session.staff ? this.signIn() : html`<main data-line=${s.link.state}>
-        <div class="col a">${this.nowPart()}${this.healthPart()}${this.modePart()}${this.figures()}</div>
+        ${this.nowPart()}<div class="col a">${this.healthPart()}${this.modePart()}${this.figures()}</div>
         ${this.planPart()}
         <section class="plate q"><docent-queue staff></docent-queue></section>
         ${this.eventsPart()}

@@ -104,23 +104,28 @@ class DocentKiosk extends LitElement {
     const tour = value(store.state.tours)?.[0];
     return html`<div class="stage"><div class="facebox"><docent-face fixed="happy"></docent-face></div><h1 class="say">${w.show}</h1>
       ${tour ? html`<p class="sub">${w.tours(w.exhibits(tour.exhibits.length), w.minutes(Math.max(1, Math.round(tour.minutes))))}</p>` : nothing}</div>
-      <div class="go"><button class="k light huge" data-key="1" @click=${() => (this.wanted = "choose")}>${w.touch}</button></div>`;
+      <div class="go"><button class="k light huge" data-key="1" @click=${() => this.openChoose()}>${w.touch}</button></div>`;
   }
 
   private choose() {
     const w = t().kiosk;
-    const tours = (value(store.state.tours) ?? []).slice(0, 3);
-    const one = html`<button class="choice" data-key=${tours.length + 1} @click=${() => this.openPick()}><span class="n">${tours.length + 1}</span>${pictures.one}
-      <span class="t"><b>${w.one}</b><span class="s">${w.oneDetail}</span></span></button>`;
+    const all = value(store.state.tours) ?? [];
+    const from = (this.page % Math.max(1, Math.ceil(all.length / 4))) * 4;
     return html`<div class="stage"><div class="lookup"><docent-face fixed="happy"></docent-face></div><h1 class="say">${w.whereTo}</h1></div>
-      ${this.desk(html`<div class="four">${tours.map((tour, i) => this.tourChoice(tour, i))}${one}</div>
-        <div class="back"><button class="k" @click=${() => (this.wanted = "nothing")}>${w.back}</button></div>`)}`;
+      ${this.desk(html`<div class="four">${all.slice(from, from + 4).map((tour, i) => this.tourChoice(tour, i))}</div>
+        <div class="row-k"><button class="k" @click=${() => (this.wanted = "nothing")}>${w.back}</button>
+          ${all.length > 4 ? html`<button class="k" @click=${() => this.page++}>${w.moreTours}</button>` : nothing}
+          <button class="k wide" data-one @click=${() => this.openPick()}>${icon("plan")}${w.one}</button></div>`)}`;
   }
   private tourChoice(tour: Tour, index: number) {
     const w = t().kiosk;
     return html`<button class="choice" data-key=${index + 1} data-tour=${tour.id} ?disabled=${this.busy} @click=${() => this.act(() => api.startTour(tour.id, ""))}>
-      <span class="n">${index + 1}</span>${tourPicture(tour.exhibits.length, index)}
+      <span class="n">${index + 1}</span>${tourPicture(tour.exhibits.map((id) => exhibitById(store.state, id)?.number ?? 0), index)}
       <span class="t"><b>${say(tour.title)}</b><span class="s">${w.minutesShort(Math.max(1, Math.round(tour.minutes)))}, ${w.exhibitsShort(tour.exhibits.length)}</span></span></button>`;
+  }
+  private openChoose(): void {
+    this.page = 0;
+    this.wanted = "choose";
   }
   private openPick(): void {
     this.page = 0;
@@ -135,7 +140,7 @@ class DocentKiosk extends LitElement {
     return html`<div class="stage"><h1 class="say mid">${w.which}</h1><div class="mapbox">${this.plan(false)}</div></div>
       ${this.desk(html`<div class="six">${shown.map((e) => html`<button class="one" data-exhibit=${e.id} ?disabled=${this.busy} @click=${() => this.act(() => api.sendTo(e.id, ""))}>
           <span class="no">${e.number}</span><span>${say(e.title)}</span></button>`)}</div>
-        <div class="two"><button class="k" @click=${() => (this.wanted = "choose")}>${w.back}</button>
+        <div class="two"><button class="k" @click=${() => this.openChoose()}>${w.back}</button>
         ${pages > 1 ? html`<button class="k" @click=${() => this.page++}>${w.moreExhibits}<span class="pageno">${(this.page % pages) + 1}/${pages}</span></button>` : html`<span></span>`}</div>`)}`;
   }
 
@@ -170,7 +175,7 @@ class DocentKiosk extends LitElement {
       ${this.desk(html`<p class="heard" ?data-empty=${!heard}>${heard ? (s.prefs.lang === "de" ? `„${heard}“` : `“${heard}”`) : exhibit ? say(exhibit.summary) : say(status.detail)}</p>
         <div class="far"><b>${metres(toGo, s.prefs.lang)}</b><span class="bar" role="img" aria-label=${`${done} %`}><i .style=${`width: ${done}%`}></i></span><span>${seconds ? about(seconds, s.prefs.lang) : ""}</span></div>
         <div class="two"><button class="k" @click=${() => this.act(() => this.endAll())} ?disabled=${this.busy}>${icon("close")}${status.tour ? w.end : w.stopGoing}</button>
-        <button class="k" @click=${() => (this.wanted = "choose")}>${icon("plan")}${w.elsewhere}</button></div>`)}`;
+        <button class="k" @click=${() => this.openChoose()}>${icon("plan")}${w.elsewhere}</button></div>`)}`;
   }
 
   // Ends the tour, or takes back the wish it is driving for.
@@ -184,7 +189,7 @@ class DocentKiosk extends LitElement {
     const w = t().kiosk, waited = (Date.now() - (this.waitingAt ?? Date.now())) / 1000;
     const mood = waited > 16 && waited < 22 ? "angry" : waited > 9 ? "sad" : "neutral";
     return html`<div class="stage" data-mood=${mood}><div class="mood"><docent-face .fixed=${mood}></docent-face></div><h1 class="say">${w.letMeThrough}</h1><p class="sub">${w.twoSteps}</p></div>
-      <div class="foot"><div class="two"><button class="k" @click=${() => (this.wanted = "choose")}>${w.elsewhere}</button>
+      <div class="foot"><div class="two"><button class="k" @click=${() => this.openChoose()}>${w.elsewhere}</button>
         <button class="k" ?disabled=${this.busy} @click=${() => this.act(() => this.endAll())}>${store.state.status?.tour ? w.end : w.stopGoing}</button></div><p class="trouble" role="alert">${this.trouble}</p></div>`;
   }
 
@@ -232,18 +237,14 @@ class DocentKiosk extends LitElement {
 }
 customElements.define("docent-kiosk", DocentKiosk);
 
-// A way with as many stops as the tour has; each tour swings another way.
-function tourPicture(stops: number, index: number) {
-  const n = Math.min(7, Math.max(2, stops));
+// A way with the numbers of the tour's exhibits; each tour swings another way.
+function tourPicture(numbers: number[], index: number) {
+  const n = Math.min(6, Math.max(2, numbers.length));
   const at = Array.from({ length: n }, (_, k) => {
     const up = (k + index) % 2 === 0 ? 1 : -1;
     return [24 + (k * 228) / (n - 1), 60 + up * (k === 0 || k === n - 1 ? 14 : 26)] as const;
   });
   const way = at.slice(1).map(([x, y], k) => `C${at[k]![0] + 228 / (n - 1) / 2} ${at[k]![1]} ${x - 228 / (n - 1) / 2} ${y} ${x} ${y}`).join("");
-  return svg`<svg class="pic" viewBox="0 0 280 120" aria-hidden="true"><path class="rd" d=${`M${at[0]![0]} ${at[0]![1]}${way}`}/>${at.map(([x, y]) => svg`<circle class="y" cx=${x} cy=${y} r="12"/>`)}</svg>`;
+  return svg`<svg class="pic" viewBox="0 0 280 120" aria-hidden="true"><path class="rd" d=${`M${at[0]![0]} ${at[0]![1]}${way}`}/>${at.map(([x, y], k) => svg`<circle class="y" cx=${x} cy=${y} r="16"/><text x=${x} y=${y + 6} text-anchor="middle">${numbers[k] || ""}</text>`)}</svg>`;
 }
-const pictures = {
-  one: svg`<svg class="pic" viewBox="0 0 280 120" aria-hidden="true"><path d="M14 10h180v100H14z"/><path d="M14 52h50V34M104 10v24M134 110V74h60"/><circle cx="40" cy="82" r="12"/><circle cx="100" cy="66" r="12"/><circle class="y" cx="158" cy="40" r="14"/><path d="M222 118c0-22-4-30-14-36-8-5-2-16 8-11l10 6V38c0-10 14-10 14 0v26l22 6c8 3 10 8 10 16v32"/></svg>`,
-};
-
 start(["path", "people"]);

@@ -1,5 +1,5 @@
 // The page for visitors on the web: the sentence, the plan, the cameras and the waiting list.
-import { LitElement, html, nothing, type PropertyValues } from "lit";
+import { LitElement, html, nothing } from "lit";
 import { connection, loadMuseum, say, start, store, t, Ticking, Watch } from "../app";
 import { atExhibit, value } from "../store";
 import { icon, mark } from "../parts/icons";
@@ -62,8 +62,7 @@ class DocentVisit extends LitElement {
   private plan(): DocentPlan | null {
     return this.querySelector<DocentPlan>("docent-plan");
   }
-  protected override updated(changed: PropertyValues): void {
-    if (changed.has("view") && this.view === "list") this.querySelector<DocentExhibitList>("docent-exhibit-list")?.focusFirst();
+  protected override updated(): void {
     const site = value(store.state.site);
     if (site && !this.settled) {
       this.settled = true;
@@ -87,7 +86,7 @@ class DocentVisit extends LitElement {
         <div class="side">
           <section class="watch plate" id="watch" aria-label=${w.cameras}><docent-cameras></docent-cameras></section>
           <section class="queue plate" id="queue" aria-label=${w.waitingList}>
-            <docent-queue @choose-place=${() => this.showList()} @choose-exhibit=${(e: CustomEvent) => this.openExhibit(e.detail.id)}></docent-queue>
+            <docent-queue @choose-place=${() => this.choosePlace()} @choose-exhibit=${(e: CustomEvent) => this.openExhibit(e.detail.id)}></docent-queue>
           </section>
         </div>
       </main>
@@ -162,6 +161,14 @@ class DocentVisit extends LitElement {
   }
   private closeCard(): void {
     this.card = null;
+  }
+  // From the waiting list: hands and eyes go on to the list of places. Not on a phone, where the keyboard would cover it.
+  private async choosePlace(): Promise<void> {
+    this.showList();
+    await this.updateComplete;
+    const list = this.querySelector<DocentExhibitList>("docent-exhibit-list");
+    await list?.updateComplete;
+    if (!phone.matches) list?.focusFirst();
   }
   private showList(): void {
     this.view = "list";

@@ -57,8 +57,8 @@ export class DocentExhibitCard extends LitElement {
       ${picture ? html`<img src=${pictureUrl(picture)} alt=${w.pictureOf(say(e.title))} @error=${(x: Event) => ((x.target as HTMLElement).hidden = true)}>` : nothing}
       <button class="sq shut" aria-label=${w.close} @click=${() => this.dispatchEvent(new CustomEvent("close-card", { bubbles: true }))}>${icon("close")}</button>
       <div class="in">
-        ${here ? this.stay() : html`<p class="numbered"><span class=${store.state.status?.exhibit === e.id ? "no next" : "no"}>${e.number}</span></p>`}
-        <h2 id="card-title">${say(e.title)}</h2>
+        ${here ? this.stay() : nothing}
+        <h2 id="card-title"><span class=${store.state.status?.exhibit === e.id ? "no next" : "no"}>${e.number}</span>${say(e.title)}</h2>
         ${here ? this.told(e) : html`<p class="body">${say(e.summary)}</p>`}
         ${here ? this.answers() : this.sending(e)}
         <p class="trouble small" role="alert">${this.trouble}</p>

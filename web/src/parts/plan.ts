@@ -12,7 +12,7 @@ import { paintLive } from "../plan/live";
 import { Motion } from "../plan/motion";
 import { PeopleDots } from "../plan/people";
 import { remaining, Trail } from "../plan/path";
-import { clampView, fit, fitScale, inside, panBy, toMap, toScreen, zoomAt, type View } from "../plan/view";
+import { clampView, distance, fit, fitScale, inside, panBy, toMap, toScreen, zoomAt, type View } from "../plan/view";
 import type { Point, Pose } from "../wire/types";
 
 export interface Layers {
@@ -57,6 +57,7 @@ export class DocentPlan extends LitElement {
   private formerly: Pose | null = null; // where it was before it was placed anew
   private jumpedAt = -Infinity;
   private seen = { pose: null as unknown, people: null as unknown, scanAt: 0, belief: null as unknown, path: null as unknown, link: null as unknown };
+  private clear: Point | null = null; // where it stops: no name there
   private dash = 0;
   private cross = false;
   private lastFrame = 0;
@@ -247,6 +248,11 @@ export class DocentPlan extends LitElement {
     const moved = !was || !this.shown || Math.hypot(was.x - this.shown.x, was.y - this.shown.y) * this.view!.scale > 0.05 || was.theta !== this.shown.theta;
     const drifting = this.layers.path && s.path.length > 1 && !calm && s.link.state === "live";
     if (drifting) this.dash += dashPace * dt;
+    const stop = this.layers.path ? s.path.at(-1) ?? (s.status?.activity === "explaining" ? this.shown && ([this.shown.x, this.shown.y] as Point) : this.clear) : null;
+    if (stop && (!this.clear || distance(stop, this.clear) > 0.4)) {
+      this.clear = stop;
+      this.groundDirty = true;
+    }
     const news = s.scanAt !== seen.scanAt || s.belief !== seen.belief || s.path !== seen.path || s.link !== seen.link;
     Object.assign(seen, { scanAt: s.scanAt, belief: s.belief, path: s.path, link: s.link });
     if (this.people.step(dt, calm) || moved || drifting || news || now - this.jumpedAt < jumpFade) this.liveDirty = true;
@@ -273,7 +279,7 @@ export class DocentPlan extends LitElement {
       view: this.view!, dpr: canvas!.width / this.view!.width, unit: this.scaleUnit(), colours: this.colours!,
       names: new Map((value(s.exhibits) ?? []).map((e) => [e.id, say(e.title)])),
       areas: (value(s.site)?.areas ?? []).map((a) => ({ text: say(a.title), at: [a.x, a.y] })),
-      next: s.status?.exhibit ?? null, quiet: s.exhibits.state === "loading", hazards: this.layers.hazards,
+      next: s.status?.exhibit ?? null, quiet: s.exhibits.state === "loading", hazards: this.layers.hazards, keepClear: this.clear ? [this.clear] : [],
     });
     this.placeBadges();
   }

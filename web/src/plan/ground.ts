@@ -60,6 +60,7 @@ export interface GroundLook {
   next: string | null;
   quiet: boolean; // walls only, pale: still loading
   hazards: boolean;
+  keepClear: Point[]; // places that names should not cover: where it is going, where it stands
 }
 
 export function paintGround(c: CanvasRenderingContext2D, g: Ground, look: GroundLook): void {
@@ -169,6 +170,8 @@ export function badgeRadius(unit: number): number {
   return 12 * unit;
 }
 
+const roomPrefix = "room:";
+
 function paintNames(c: CanvasRenderingContext2D, g: Ground, look: GroundLook): void {
   const { view: v, colours, unit } = look;
   const size = 13 * unit, sizeNext = 15.5 * unit, badge = badgeRadius(unit);
@@ -187,15 +190,24 @@ function paintNames(c: CanvasRenderingContext2D, g: Ground, look: GroundLook): v
   }
   const home = toScreen(v, [g.site.home.x, g.site.home.y]);
   taken.push({ x0: home[0] - 10 * unit, y0: home[1] - 10 * unit, x1: home[0] + 10 * unit, y1: home[1] + 10 * unit });
-  for (const p of placeLabels(anchors, taken, (box) => wallShare(g, v, box))) {
+  for (const p of look.keepClear) {
+    const [x, y] = toScreen(v, p), r = 17 * unit;
+    taken.push({ x0: x - r, y0: y - r, x1: x + r, y1: y + r });
+  }
+  c.font = font(size, 400);
+  look.areas.forEach((area, k) => anchors.push({
+    id: `${roomPrefix}${k}`, lines: [area.text], width: c.measureText(area.text).width, lineHeight: size * 1.15, at: toScreen(v, area.at), half: [0, 0], must: false, on: true,
+  }));
+  const window = { x0: 0, y0: 0, x1: v.width, y1: v.height };
+  for (const p of placeLabels(anchors, taken, (box) => wallShare(g, v, box), window)) {
+    if (p.id.startsWith(roomPrefix)) {
+      c.font = font(size, 400);
+      paintText(c, p.lines, p.x, p.y, p.align, size, colours.ink2, colours.floor, 3.5 * unit);
+      continue;
+    }
     const next = p.id === look.next;
     c.font = next ? font(sizeNext, 800) : font(size, 700);
     paintText(c, p.lines, p.x, p.y, p.align, (next ? sizeNext : size) * 1.15, next ? colours.ink : colours.exhibit, colours.floor, 4 * unit);
-  }
-  c.font = font(13 * unit, 400);
-  for (const area of look.areas) {
-    const at = toScreen(v, area.at);
-    paintText(c, [area.text], at[0], at[1] + 4 * unit, "center", 15 * unit, colours.ink2, colours.floor, 3.5 * unit);
   }
 }
 

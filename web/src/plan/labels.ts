@@ -10,6 +10,7 @@ export interface Anchor {
   at: Point; // px, middle of the thing named
   half: Point; // px, half its size
   must: boolean; // to be shown whatever it covers
+  on?: boolean; // stands on its place, not beside it: names of rooms
 }
 export interface Placed {
   id: string;
@@ -28,17 +29,18 @@ export interface Box {
 const gap = 4; // px between the thing and its name
 
 // `taken`: boxes that names should not cover. `busy` 0..1: how much wall lies under a box.
-export function placeLabels(anchors: Anchor[], taken: Box[], busy: (box: Box) => number): Placed[] {
+export function placeLabels(anchors: Anchor[], taken: Box[], busy: (box: Box) => number, window: Box): Placed[] {
   const out: Placed[] = [];
   const boxes = [...taken];
-  for (const anchor of [...anchors].sort((a, b) => Number(b.must) - Number(a.must))) {
+  const rank = (a: Anchor) => (a.must ? 0 : a.on ? 2 : 1);
+  for (const anchor of [...anchors].sort((a, b) => rank(a) - rank(b))) {
     let best: { placed: Placed; box: Box } | null = null, bestCost = Infinity;
-    candidates(anchor).forEach((candidate, rank) => {
+    candidates(anchor, window).forEach((candidate, choice) => {
       const cover = boxes.reduce((sum, box) => sum + overlap(candidate.box, box), 0) / area(candidate.box);
-      const cost = cover * 4 + busy(candidate.box) * 2 + rank * 0.12;
+      const cost = cover * 4 + busy(candidate.box) * 2 + choice * 0.12;
       if (cost < bestCost) (best = candidate), (bestCost = cost);
     });
-    if (!best || (bestCost > 1.1 && !anchor.must)) continue;
+    if (!best || (bestCost > (anchor.on ? 0.3 : 1.1) && !anchor.must)) continue;
     const chosen = best as { placed: Placed; box: Box };
     out.push(chosen.placed);
     boxes.push(chosen.box);
@@ -46,16 +48,20 @@ export function placeLabels(anchors: Anchor[], taken: Box[], busy: (box: Box) =>
   return out;
 }
 
-function candidates(a: Anchor): { placed: Placed; box: Box }[] {
+function candidates(a: Anchor, window: Box): { placed: Placed; box: Box }[] {
   const h = a.lines.length * a.lineHeight, [x, y] = a.at, [hx, hy] = a.half;
   const below = y + hy + gap, above = y - hy - gap - h, right = x + hx + gap + 2, left = x - hx - gap - 2;
-  const make = (align: Placed["align"], lx: number, top: number) => {
+  // A name that would be cut by the window's edge moves in, as long as its exhibit is in the window.
+  const inWindow = x > window.x0 && x < window.x1 && y > window.y0 && y < window.y1;
+  const make = (align: Placed["align"], wanted: number, top: number) => {
+    const lx = align === "center" && inWindow ? Math.max(window.x0 + a.width / 2 + 2, Math.min(window.x1 - a.width / 2 - 2, wanted)) : wanted;
     const x0 = align === "center" ? lx - a.width / 2 : align === "left" ? lx : lx - a.width;
     return {
       placed: { id: a.id, lines: a.lines, x: lx, y: top + a.lineHeight * 0.8, align },
       box: { x0, y0: top, x1: x0 + a.width, y1: top + h },
     };
   };
+  if (a.on) return [make("center", x, y - h / 2)];
   return [make("center", x, below), make("center", x, above), make("left", right, y - h / 2), make("right", left, y - h / 2)];
 }
 function area(b: Box): number {

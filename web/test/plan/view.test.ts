@@ -61,20 +61,30 @@ describe("shapes", () => {
 
 describe("names on the plan", () => {
   const anchor = (id: string, x: number, y: number, must = false): Anchor => ({ id, lines: [id], width: 60, lineHeight: 14, at: [x, y], half: [12, 12], must });
+  const window = { x0: 0, y0: 0, x1: 800, y1: 600 };
+  it("move in from the window's edge", () => {
+    const [placed] = placeLabels([anchor("a", 10, 100)], [], () => 0, window);
+    expect(placed!.x - 30).toBeGreaterThanOrEqual(0);
+  });
+  it("of rooms give way to those of exhibits", () => {
+    const room = { ...anchor("room", 100, 120), on: true };
+    expect(placeLabels([room, anchor("a", 100, 100)], [], () => 0, window).map((p) => p.id)).toEqual(["a"]);
+    expect(placeLabels([room], [], () => 0, window)).toMatchObject([{ id: "room", x: 100 }]);
+  });
   it("stand below when there is room", () => {
-    const [placed] = placeLabels([anchor("a", 100, 100)], [], () => 0);
+    const [placed] = placeLabels([anchor("a", 100, 100)], [], () => 0, window);
     expect(placed).toMatchObject({ align: "center", x: 100 });
     expect(placed!.y).toBeGreaterThan(112);
   });
   it("make way for each other", () => {
-    const placed = placeLabels([anchor("a", 100, 100), anchor("b", 130, 100)], [], () => 0);
+    const placed = placeLabels([anchor("a", 100, 100), anchor("b", 130, 100)], [], () => 0, window);
     expect(placed).toHaveLength(2);
     expect(placed[0]!.y).not.toBe(placed[1]!.y);
   });
   it("are left out where nothing is free, except the next stop's", () => {
     const everywhere = [{ x0: -1000, y0: -1000, x1: 1000, y1: 1000 }];
-    expect(placeLabels([anchor("a", 0, 0)], everywhere, () => 0)).toEqual([]);
-    expect(placeLabels([anchor("a", 0, 0, true)], everywhere, () => 0)).toHaveLength(1);
+    expect(placeLabels([anchor("a", 0, 0)], everywhere, () => 0, window)).toEqual([]);
+    expect(placeLabels([anchor("a", 0, 0, true)], everywhere, () => 0, window)).toHaveLength(1);
   });
   it("break near their middle", () => {
     const measure = (text: string) => text.length;
