@@ -123,16 +123,19 @@ struct Robot::Parts {
 
   // ---- Sensors -------------------------------------------------------------------------------------------------
 
-  void take(const Odometry& odometry, Time, Outputs&) {
-    gate.add(odometry);
+  void take(const Odometry& odometry, Time now, Outputs&) {
+    gate.add(odometry, now);
     scans.add(odometry);
     localizer.move(odometry.odom_from_base, odometry.time);
     measured = odometry.twist;
   }
 
-  void take(const LaserScan& scan, Time, Outputs& out) {
-    gate.add(scan);
+  void take(const LaserScan& scan, Time now, Outputs& out) {
+    gate.add(scan, now);
     scans.add(scan);
+    // Whoever steps in front of the robot is answered at once, not on the next tick.
+    const WheelCommand passed = gate.limit(wanted, now);
+    if (passed.twist != last_command.twist) out.push_back(command(passed));
     const auto laser = static_cast<std::size_t>(scan.laser);
     const auto odom_from_base = scans.odom_from_base(scan.time);
     if (laser >= config.body.lasers.size() || !odom_from_base || !understand[laser].due(scan.time)) return;
@@ -158,7 +161,7 @@ struct Robot::Parts {
   }
 
   void take(const BaseState& state, Time now, Outputs& out) {
-    gate.add(state);
+    gate.add(state, now);
     base = state;
     // Motors are off after every connection and after an emergency stop: switch them on when nobody wants them off.
     if (!state.motors_enabled && !state.emergency_stop && !gate.stopped() && ask_motors.due(now))
