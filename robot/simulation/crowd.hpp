@@ -63,6 +63,7 @@ class Crowd {
   void think(std::size_t i, double dt, const RobotSeen& robot);
   void choose_exhibit(std::size_t i);
   void stroll(std::size_t i);
+  bool sees(Point from, Point to) const;
   void look_at_exhibit(std::size_t i);
   void finish(std::size_t i);
   void notice_robot(std::size_t i, double dt, const RobotSeen& robot);

@@ -85,18 +85,24 @@ void Crowd::choose_exhibit(std::size_t i) {
 void Crowd::stroll(std::size_t i) {
   Person& person = people_[i];
   Mind& mind = minds_[i];
-  const double way = routes_.way(mind.destination, person.position);
-  const double left = length(person.position - mind.spot);
-  const bool close = way < 0.1 || left < 2.0;
-  if (routes_.exhibits() == 0 || (close && left < 6.0)) {
-    go(i, mind.spot, mind.pace, 0.5);
-  } else {
-    mind.wanted = mind.pace * routes_.direction(mind.destination, person.position);
-    if (length(mind.wanted) < 0.1) go(i, mind.spot, mind.pace, 0.5);
+  double left = length(mind.spot - person.position);
+  const bool there = routes_.way(mind.destination, person.position) < 0.1;
+  const bool in_sight = left < 6.0 && sees(person.position, mind.spot);
+  if (there && !in_sight) {  // round a corner, or through glass: another place will do
+    mind.spot = routes_.spot(mind.destination, random_);
+    if (length(mind.spot - person.position) > 3.0 || !sees(person.position, mind.spot)) mind.spot = person.position;
+    left = length(mind.spot - person.position);
   }
+  mind.wanted = mind.pace * routes_.direction(mind.destination, person.position);
+  if (there || (in_sight && left < 2.0)) go(i, mind.spot, mind.pace, 0.5);
   if (left > 0.5 && now_ < mind.until) return;
   if (person.doing == Doing::leaving) return enter(i, routes_.spot(routes_.entrance(), random_));
   look_at_exhibit(i);
+}
+
+bool Crowd::sees(Point from, Point to) const {
+  const double d = length(to - from);
+  return d < 1e-6 || walls_.ray(from, (1.0 / d) * (to - from), d) >= d - 0.05;
 }
 
 void Crowd::look_at_exhibit(std::size_t i) {
@@ -137,8 +143,7 @@ void Crowd::notice_robot(std::size_t i, double dt, const RobotSeen& robot) {
   if (d > notice_within || now_ < mind.interest_from || mind.distracted || person.doing == Doing::leaving) return;
   const double a_second = person.temper == Temper::curious ? 0.12 : person.temper == Temper::regular ? 0.025 : 0.0;
   if (!random_.chance(a_second * dt)) return;
-  const Point to = robot.pose.position() - person.position;
-  if (walls_.ray(person.position, (1.0 / d) * to, d) < d - 0.3) return;
+  if (!sees(person.position, robot.pose.position())) return;
   person.doing = moving(robot) ? Doing::following : Doing::crowding;
   mind.bearing = bearing_from(robot, person.position);
   mind.until = now_ + 15.0 + exponential(random_, person.temper == Temper::curious ? 70.0 : 25.0);
