@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "protocols/files/bytes.hpp"
 #include "protocols/files/fields.hpp"
 #include "protocols/files/problem.hpp"
-#include "protocols/files/sensor_log.hpp"
 
 namespace files {
 namespace {
@@ -44,7 +44,11 @@ PoseTrack poses_of_log(std::string_view text, const std::string& name) {
 std::optional<TimedPose> parse_pose(std::string_view line, int columns) {
   Fields fields(line);
   TimedPose timed;
-  if (columns == 6 && !fields.integer()) return std::nullopt;
+  if (columns == 6) {
+    const auto record = fields.integer();
+    if (!record || *record < 0) return std::nullopt;
+    timed.record = *record;
+  }
   if (!fields.numbers(timed.time, timed.pose.x, timed.pose.y, timed.pose.theta)) return std::nullopt;
   timed.pose.theta = robot::wrap_angle(timed.pose.theta);
   return timed;
@@ -83,8 +87,9 @@ PoseTrack read_poses(const std::filesystem::path& path) {
 void write_poses(const std::filesystem::path& path, const PoseTrack& track) {
   std::string text = "time,x,y,theta\n";
   char line[128];
-  for (const auto& [time, pose] : track) {
-    const int length = std::snprintf(line, sizeof line, "%.6f,%.6f,%.6f,%.6f\n", time, pose.x, pose.y, pose.theta);
+  for (const auto& timed : track) {
+    const int length = std::snprintf(line, sizeof line, "%.6f,%.6f,%.6f,%.6f\n", timed.time, timed.pose.x, timed.pose.y,
+                                     timed.pose.theta);
     text.append(line, static_cast<std::size_t>(length));
   }
   write_bytes(path, text);
@@ -109,6 +114,24 @@ std::optional<robot::Pose> pose_at(const PoseTrack& track, double time, double m
   const double turn = robot::wrap_angle(b.pose.theta - a.pose.theta);
   return robot::Pose{a.pose.x + share * (b.pose.x - a.pose.x), a.pose.y + share * (b.pose.y - a.pose.y),
                      robot::wrap_angle(a.pose.theta + share * turn)};
+}
+
+std::vector<std::optional<robot::Pose>> poses_of_scans(const SensorLog& log, const PoseTrack& track) {
+  constexpr double same_time = 0.02;  // s: else the records are not this log's
+  std::map<int, const TimedPose*> by_record;
+  for (const auto& timed : track) {
+    if (timed.record >= 0) by_record[timed.record] = &timed;
+  }
+  std::vector<std::optional<robot::Pose>> poses;
+  for (const auto& entry : log.entries) {
+    const auto* logged = std::get_if<LoggedScan>(&entry);
+    if (!logged) continue;
+    const double time = robot::to_seconds(logged->scan.time);
+    const auto named = by_record.find(logged->record);
+    const bool fits = named != by_record.end() && std::abs(named->second->time - time) < same_time;
+    poses.push_back(fits ? std::optional(named->second->pose) : pose_at(track, time));
+  }
+  return poses;
 }
 
 std::vector<Relation> parse_relations(std::string_view text, const std::string& name) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "protocols/files/sensor_log.hpp"
 #include "robot/geometry/pose.hpp"
 
 namespace files {
@@ -14,6 +15,7 @@ namespace files {
 struct TimedPose {
   double time = 0.0;  // s
   robot::Pose pose;
+  int record = -1;  // number of the log's odometry record that it belongs to; -1: none is named
 };
 
 // Sorted by time.
@@ -30,6 +32,10 @@ void write_poses(const std::filesystem::path& path, const PoseTrack& track);
 // The pose at a time: interpolated between neighbours that are at most max_gap seconds apart, else the nearest one
 // within `tolerance` seconds, else nothing.
 std::optional<robot::Pose> pose_at(const PoseTrack& track, double time, double max_gap = 1.0, double tolerance = 0.05);
+
+// The pose of each scan of a log, in the log's order: that of its odometry record where the track names records, else
+// the one at its time. Stamps of a hundredth of a second are shared by several records of some logs.
+std::vector<std::optional<robot::Pose>> poses_of_scans(const SensorLog& log, const PoseTrack& track);
 
 // The pose at to_time seen from the pose at from_time (either may come first).
 struct Relation {

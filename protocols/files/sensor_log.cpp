@@ -30,6 +30,7 @@ class LogReader {
     const char* reason = nullptr;
     if (keyword == "ODOM") {
       reason = odom(fields);
+      ++record_;
     } else if (keyword == "FLASER") {
       reason = flaser(fields);
     } else if (keyword == "ROBOTLASER1") {
@@ -173,6 +174,7 @@ class LogReader {
     if (const char* reason = add(robot::Odometry{time, base, twist})) return reason;
     logged.scan.time = time;
     logged.base_from_laser = base_from_laser;
+    logged.record = record_;
     log_.entries.emplace_back(std::move(logged));
     ++log_.scans;
     return nullptr;
@@ -201,6 +203,7 @@ class LogReader {
 
   SensorLog& log_;
   std::vector<double> offsets_;
+  int record_ = -1;  // of the last ODOM line
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace files {
 struct LoggedScan {
   robot::LaserScan scan;        // times on the logger's clock
   robot::Pose base_from_laser;  // as the log says
+  int record = -1;              // number of the ODOM line that it follows, from 0; -1: it follows none
 };
 
 using LogEntry = std::variant<robot::Odometry, LoggedScan>;

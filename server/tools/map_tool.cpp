@@ -65,13 +65,15 @@ KnownPoseMap map_from_poses(const files::SensorLog& log, const files::PoseTrack&
   robot::OccupancyMapperConfig config;
   config.resolution = resolution;
   robot::OccupancyMapper mapper(config);
+  const auto poses = files::poses_of_scans(log, track);
   KnownPoseMap made;
+  std::size_t number = 0;
   for (const auto& entry : log.entries) {
     const auto* logged = std::get_if<files::LoggedScan>(&entry);
     if (!logged) continue;
     const double time = robot::to_seconds(logged->scan.time);
-    const auto pose = in_any(windows, time) ? files::pose_at(track, time) : std::nullopt;
-    if (!pose) continue;
+    const auto pose = poses[number++];
+    if (!pose || !in_any(windows, time)) continue;
     mapper.insert(logged->scan, *pose * logged->base_from_laser);
     made.poses.push_back({time, *pose});
   }

@@ -27,7 +27,9 @@ class Stopwatch {
 
 Replay::Replay(ReplaySetup setup)
     : setup_(std::move(setup)),
-      localizer_(std::make_unique<robot::Localizer>(setup_.map, setup_.localizer, setup_.seed)) {
+      localizer_(std::make_unique<robot::Localizer>(setup_.map, setup_.localizer, setup_.seed)),
+      drive_(hull_of(setup_.windows)),
+      truth_(files::poses_of_scans(setup_.log, setup_.truth)) {
   if (setup_.start) {
     localizer_->start_at(*setup_.start, start_sigma_position, start_sigma_theta);
   } else {
@@ -42,12 +44,14 @@ bool Replay::next() {
   for (; at_ < setup_.log.entries.size(); ++at_) {
     const auto& entry = setup_.log.entries[at_];
     if (const auto* odometry = std::get_if<robot::Odometry>(&entry)) {
-      if (setup_.window.contains(robot::to_seconds(odometry->time))) move(*odometry);
+      if (drive_.contains(robot::to_seconds(odometry->time))) move(*odometry);
       continue;
     }
     const auto& logged = std::get<files::LoggedScan>(entry);
-    if (!setup_.window.contains(robot::to_seconds(logged.scan.time)) || !odometry_) continue;
+    const auto number = scan_++;
+    if (!in_any(setup_.windows, robot::to_seconds(logged.scan.time)) || !odometry_) continue;
     take(logged);
+    step_.truth = truth_[number];
     ++at_;
     return true;
   }
@@ -88,7 +92,6 @@ void Replay::take(const files::LoggedScan& logged) {
                 estimate.particles, estimate.localized,     odometry_->twist};
   step_.scan = {logged.scan.time,       logged.scan.laser,  reading.map_from_laser,  logged.scan.angle_min,
                 logged.scan.angle_step, logged.scan.ranges, std::move(reading.kinds)};
-  step_.truth = files::pose_at(setup_.truth, step_.time);
 }
 
 robot::Belief Replay::belief(int at_most) const { return {step_.pose.time, localizer_->samples(at_most)}; }

@@ -20,7 +20,9 @@ struct ReplaySetup {
   robot::OccupancyGrid map;
   files::PoseTrack truth;            // in the map's frame; empty: nobody knows
   std::optional<robot::Pose> start;  // none: the whole map is searched
-  Window window;                     // s on the logger's clock
+  // Scans of these stretches only; odometry from the first one's beginning to the last one's end, so that in a gap the
+  // robot drives on blindly.
+  std::vector<Window> windows = {Window{}};
   std::uint64_t seed = 1;
   robot::LocalizerConfig localizer;
 };
@@ -59,7 +61,10 @@ class Replay {
 
   ReplaySetup setup_;
   std::unique_ptr<robot::Localizer> localizer_;
-  std::size_t at_ = 0;  // the next entry
+  Window drive_;                                   // of odometry
+  std::vector<std::optional<robot::Pose>> truth_;  // of all scans of the log
+  std::size_t scan_ = 0;                           // number of the next scan in the log
+  std::size_t at_ = 0;                             // the next entry
   std::optional<robot::Odometry> odometry_;
   std::optional<double> searched_until_;
   double pending_ms_ = 0.0;  // of motion since the last scan

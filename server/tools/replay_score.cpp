@@ -45,7 +45,8 @@ void ReplayScore::add_error(const ReplayStep& step, double elapsed) {
     converged_seconds_ = step.time - *first_time_;
     converged_metres_ = step.path_m;
   }
-  if (!sure || off) lost_seconds_ += elapsed;
+  if (off || step.lost) lost_seconds_ += elapsed;
+  if (!sure) unsure_seconds_ += elapsed;
   if (sure && off) lost_unnoticed_seconds_ += elapsed;
   if (!step.truth) return;
   metres_.push_back(metres);
@@ -71,6 +72,7 @@ nlohmann::json ReplayScore::report() const {
       {"converged", nullptr},
       {"lost_seconds", lost_seconds_},
       {"lost_unnoticed_seconds", lost_unnoticed_seconds_},
+      {"unsure_seconds", unsure_seconds_},
       {"final_error_m", or_null(final_error_)},
       {"sigma_m", {{"median", at(sigmas_, 0.5)}, {"max", greatest(sigmas_)}}},
       {"particles", {{"median", at(particles_, 0.5)}, {"max", greatest(particles_)}}},

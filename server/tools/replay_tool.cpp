@@ -23,12 +23,15 @@ robot::Pose parse_start(const std::string& text) {
   return pose;
 }
 
-// The truth at the window's first scan that has one.
+// The truth at the first scan that has one.
 std::optional<robot::Pose> first_truth(const ReplaySetup& setup) {
+  const auto poses = files::poses_of_scans(setup.log, setup.truth);
+  std::size_t number = 0;
   for (const auto& entry : setup.log.entries) {
     const auto* logged = std::get_if<files::LoggedScan>(&entry);
-    if (!logged || !setup.window.contains(robot::to_seconds(logged->scan.time))) continue;
-    return files::pose_at(setup.truth, robot::to_seconds(logged->scan.time));
+    if (!logged) continue;
+    const auto pose = poses[number++];
+    if (in_any(setup.windows, robot::to_seconds(logged->scan.time))) return pose;
   }
   return std::nullopt;
 }
@@ -51,9 +54,7 @@ void align_clock(files::PoseTrack& truth, const files::SensorLog& log) {
 
 ReplaySetup prepare_replay(const ReplayOptions& options) {
   ReplaySetup setup;
-  if (options.from) setup.window.from = *options.from;
-  if (options.to) setup.window.to = *options.to;
-  if (!(setup.window.from < setup.window.to)) throw std::invalid_argument("--from must lie before --to");
+  setup.windows = windows_of(options.from, options.to);
   setup.log = files::read_log(options.log);
   setup.map = files::read_map(options.map);
   setup.seed = options.seed;
@@ -99,7 +100,7 @@ CLI::App* add_replay_command(CLI::App& app, std::function<bool(const ReplayOptio
   auto options = std::make_shared<ReplayOptions>();
   command->add_option("log", options->log, "CARMEN or Wean log, plain or gzipped")->required();
   command->add_option("--map", options->map, "map.yaml or its folder, a CARMEN .map or wean.dat")->required();
-  command->add_option("--from", options->from, "seconds on the log's clock");
+  command->add_option("--from", options->from, "seconds on the log's clock; may be repeated with --to");
   command->add_option("--to", options->to, "seconds on the log's clock");
   command->add_option("--start", options->start, "global or x,y,degrees; else the truth at the first scan");
   command->add_option("--truth", options->truth, "reference poses in the map's frame");

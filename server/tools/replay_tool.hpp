@@ -3,8 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -15,12 +16,11 @@ namespace tools {
 
 struct ReplayOptions {
   std::filesystem::path log;
-  std::filesystem::path map;    // map.yaml, a folder that holds one, a CARMEN .map or wean.dat
-  std::optional<double> from;   // s on the log's clock
-  std::optional<double> to;     // s
-  std::string start;            // "global", "x,y,deg", or empty: the truth at the first scan, else global
-  std::filesystem::path truth;  // reference poses; empty: none
-  std::filesystem::path track;  // where the estimates go as CSV; empty: nowhere
+  std::filesystem::path map;     // map.yaml, a folder that holds one, a CARMEN .map or wean.dat
+  std::vector<double> from, to;  // s on the log's clock, stretches whose scans are used
+  std::string start;             // "global", "x,y,deg", or empty: the truth at the first scan, else global
+  std::filesystem::path truth;   // reference poses; empty: none
+  std::filesystem::path track;   // where the estimates go as CSV; empty: nowhere
   std::string report = "-";
   std::uint64_t seed = 1;
 };

@@ -15,6 +15,13 @@ std::vector<Window> windows_of(const std::vector<double>& from, const std::vecto
   return windows;
 }
 
+Window hull_of(const std::vector<Window>& windows) {
+  if (windows.empty()) return {};
+  Window hull = windows.front();
+  for (const auto& window : windows) hull = {std::min(hull.from, window.from), std::max(hull.to, window.to)};
+  return hull;
+}
+
 bool in_any(const std::vector<Window>& windows, double time) {
   return std::any_of(windows.begin(), windows.end(), [&](const Window& w) { return w.contains(time); });
 }

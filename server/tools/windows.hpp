@@ -16,6 +16,8 @@ struct Window {
 // Pairs up --from and --to given any number of times; missing ends are open. No window at all: everything.
 // Throws std::invalid_argument.
 std::vector<Window> windows_of(const std::vector<double>& from, const std::vector<double>& to);
+// From the earliest beginning to the latest end.
+Window hull_of(const std::vector<Window>& windows);
 bool in_any(const std::vector<Window>& windows, double time);
 
 }  // namespace tools
