@@ -135,8 +135,11 @@ function paintGlow(c: CanvasRenderingContext2D, g: Ground, look: GroundLook): vo
   glow.addColorStop(0, withAlpha(look.colours.goal, 0.44));
   glow.addColorStop(0.6, withAlpha(look.colours.goal, 0.2));
   glow.addColorStop(1, withAlpha(look.colours.goal, 0));
+  c.save();
+  c.clip(g.floor, "evenodd");
   c.fillStyle = glow;
   c.fillRect(x - r, y - r, 2 * r, 2 * r);
+  c.restore();
 }
 
 function paintExhibit(c: CanvasRenderingContext2D, e: ExhibitShape, next: boolean, look: GroundLook, px: (n: number) => number): void {
