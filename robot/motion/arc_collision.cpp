@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "robot/motion/sweep.hpp"
 
 namespace robot {
 namespace {
 
 constexpr double still = 1e-6;           // m/s or rad/s that count as none
 constexpr double straight_radius = 200;  // m; flatter arcs are treated as straight lines
-constexpr float far_away = 1e30f;
 
 // Does the motion push the rectangle farther over a point that it already covers? The way out is across the nearest
 // edge.
@@ -25,14 +25,6 @@ bool pushes_over(const Footprint& f, Point p, const Twist& twist) {
   return velocity.y < -still;
 }
 
-// A measure of the angle from u to v, turning counter-clockwise, that grows with it from 0 to 4, a unit a quadrant: no
-// trigonometry, and exact for the small angles of wide arcs. Both vectors have the length 1 / sqrt(inverse_radius2).
-inline float pseudo_angle(float ux, float uy, float vx, float vy, float inverse_radius2) {
-  const float c = (ux * vx + uy * vy) * inverse_radius2, s = (ux * vy - uy * vx) * inverse_radius2;
-  const float left = c > 0.0f ? s : 1.0f - c, right = c > 0.0f ? 3.0f + c : 2.0f - s;
-  return s >= 0.0f ? left : right;
-}
-
 double from_pseudo_angle(double a) {
   if (a <= 1.0) return std::asin(a);
   if (a <= 2.0) return std::acos(std::max(1.0 - a, -1.0));
@@ -40,53 +32,8 @@ double from_pseudo_angle(double a) {
   return 2.0 * pi - std::acos(std::min(a - 3.0, 1.0));
 }
 
-double straight_contact(const Footprint& f, const PointColumns& points, double linear) {
-  const auto edge = static_cast<float>(linear > 0.0 ? f.front : f.rear), half = static_cast<float>(f.half_width);
-  const float sign = linear > 0.0 ? 1.0f : -1.0f;
-  float nearest = far_away;
-  const std::size_t n = points.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const float way = sign * points.x[i] - edge;
-    const bool meets = std::abs(points.y[i]) < half && way >= 0.0f;
-    nearest = meets && way < nearest ? way : nearest;
-  }
-  return nearest < far_away ? nearest / std::abs(linear) : no_contact;
-}
-
-// In the robot's frame every point turns about the centre (0, radius), by minus the robot's own turn. Mirrored so that
-// the points always turn clockwise: `turn_sign` is the sign of the angular velocity.
-double turning_contact(const Footprint& f, const PointColumns& points, double radius, double turn_sign) {
-  const auto cy = static_cast<float>(radius), sign = static_cast<float>(turn_sign);
-  const float front = static_cast<float>(f.front), rear = static_cast<float>(-f.rear);
-  const float left = static_cast<float>(f.half_width), right = -left;
-  float nearest = far_away;
-  const std::size_t n = points.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const float px = points.x[i], py = points.y[i] - cy;
-    const float r2 = px * px + py * py, inverse = 1.0f / std::max(r2, 1e-12f);
-    // Turning from where it meets an edge to the point, counter-clockwise for a left turn of the robot.
-    const auto meet = [&](float x, float y, bool valid) {
-      const float a = pseudo_angle(x, sign * y, px, sign * py, inverse);
-      return valid ? a : far_away;
-    };
-    const auto on_x = [&](float x) {  // front or rear edge
-      const float y2 = r2 - x * x, y = std::sqrt(std::max(y2, 0.0f));
-      const float low = right - cy, high = left - cy;
-      const float a = meet(x, y, y2 >= 0.0f && y >= low && y <= high);
-      const float b = meet(x, -y, y2 >= 0.0f && -y >= low && -y <= high);
-      return std::min(a, b);
-    };
-    const auto on_y = [&](float edge) {  // left or right edge
-      const float y = edge - cy, x2 = r2 - y * y, x = std::sqrt(std::max(x2, 0.0f));
-      const float a = meet(x, y, x2 >= 0.0f && x >= rear && x <= front);
-      const float b = meet(-x, y, x2 >= 0.0f && -x >= rear && -x <= front);
-      return std::min(a, b);
-    };
-    const float first = std::min(std::min(on_x(front), on_x(rear)), std::min(on_y(left), on_y(right)));
-    const bool inside = points.x[i] > rear && points.x[i] < front && points.y[i] > right && points.y[i] < left;
-    nearest = inside ? nearest : std::min(nearest, first);
-  }
-  return nearest < far_away ? from_pseudo_angle(nearest) : no_contact;
+sweep::Box box(const Footprint& f) {
+  return {static_cast<float>(f.front), static_cast<float>(f.rear), static_cast<float>(f.half_width)};
 }
 
 bool pushes_over_any(const Footprint& f, const PointColumns& points, const Twist& twist) {
@@ -115,9 +62,14 @@ double time_to_contact(const Footprint& footprint, const PointColumns& points, c
   if (!moves && !turns) return no_contact;
   if (pushes_over_any(footprint, points, twist)) return 0.0;
   const double radius = turns ? twist.linear / twist.angular : straight_radius;
-  if (!turns || std::abs(radius) >= straight_radius) return straight_contact(footprint, points, twist.linear);
-  const double angle = turning_contact(footprint, points, radius, twist.angular > 0.0 ? 1.0 : -1.0);
-  return angle / std::abs(twist.angular);
+  if (!turns || std::abs(radius) >= straight_radius) {
+    const float way = sweep::straight(box(footprint), twist.linear > 0.0 ? 1.0f : -1.0f, points.x.data(),
+                                      points.y.data(), points.size());
+    return way < sweep::far_away ? way / std::abs(twist.linear) : no_contact;
+  }
+  const float turned = sweep::turning(box(footprint), static_cast<float>(radius), twist.angular > 0.0 ? 1.0f : -1.0f,
+                                      points.x.data(), points.y.data(), points.size());
+  return turned < sweep::far_away ? from_pseudo_angle(turned) / std::abs(twist.angular) : no_contact;
 }
 
 double time_to_contact_plain(const Footprint& f, Point p, const Twist& twist) {

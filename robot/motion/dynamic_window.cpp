@@ -4,13 +4,16 @@
 #include <cmath>
 #include <limits>
 
+#include "robot/motion/sweep.hpp"
+
 namespace robot {
 namespace {
 
 constexpr double carrot_near = 0.5, carrot_seconds = 1.3, carrot_far = 1.5;  // m, s, m
 constexpr double carrot_deviation = 0.15;                                    // m
-constexpr int judged_poses = 4;                                              // along an arc, for clearance
-constexpr double enough_progress = 0.05;                                     // m within the lookahead
+constexpr double clearance_reach = 2.2;      // m from the base within which standing things matter for clearance
+constexpr int judged_poses = 4;              // along an arc, for clearance
+constexpr double enough_progress = 0.05;     // m within the lookahead
 constexpr double slow = 0.25;                // m/s at which the robot may turn on the spot without braking first
 constexpr double least_turn = 0.25;          // rad/s; wheels stick below
 constexpr double least_speed = 0.07;         // m/s, likewise
@@ -39,11 +42,12 @@ DynamicWindow::Scene DynamicWindow::look(const MotionTask& task, const Pose& map
     scene.solid.push_back(o.position);
     const bool walks = o.velocity.x != 0.0 || o.velocity.y != 0.0;
     if (walks) scene.solid.push_back(o.position + config_.prediction.count() * o.velocity);
-    (walks ? scene.walking : scene.standing).push_back(o);
+    if (walks) scene.walking.push_back(o);
+    if (!walks && norm(o.position) < clearance_reach) scene.near.push_back(o.position);
   }
   for (const Point& p : hazards.points) {
     scene.hazard.push_back(p);
-    scene.standing.push_back({p, {}});
+    if (norm(p) < clearance_reach) scene.near.push_back(p);
   }
   const double to_goal = std::max(scene.path.remaining(), distance(task.goal.position(), map_from_base.position()));
   const double approach = std::sqrt(2.0 * config_.goal_deceleration * to_goal);
@@ -66,17 +70,18 @@ bool DynamicWindow::can_stop(const Twist& twist, double contact_seconds) const {
 
 // The least distance between the footprint and anything along the arc, walkers met where they will be by then.
 double DynamicWindow::clearance(const Scene& scene, const Twist& twist, double seconds) const {
+  const Footprint& f = body_.footprint;
+  const sweep::Box box{static_cast<float>(f.front), static_cast<float>(f.rear), static_cast<float>(f.half_width)};
   double least = config_.comfortable;
   for (int i = 1; i <= judged_poses; ++i) {
     const double t = seconds * i / judged_poses;
-    const Pose there = inverse(arc(twist, t));
-    for (const Obstacle& o : scene.standing) {
-      if (norm(o.position) > 2.0) continue;
-      least = std::min(least, distance_to(body_.footprint, there * o.position));
-    }
-    for (const Obstacle& o : scene.walking) {
-      least = std::min(least, distance_to(body_.footprint, there * (o.position + t * o.velocity)));
-    }
+    const Pose pose = arc(twist, t), there = inverse(pose);
+    const float standing = sweep::least_distance(
+        box, static_cast<float>(pose.x), static_cast<float>(pose.y), static_cast<float>(std::cos(pose.theta)),
+        static_cast<float>(std::sin(pose.theta)), scene.near.x.data(), scene.near.y.data(), nullptr, scene.near.size());
+    least = std::min(least, std::max(0.0, static_cast<double>(standing)));
+    for (const Obstacle& o : scene.walking)
+      least = std::min(least, distance_to(f, there * (o.position + t * o.velocity)));
   }
   return least;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/motion/sweep.hpp"
+
 namespace robot {
 namespace {
 
@@ -16,10 +18,8 @@ double approach(double from, double to, double up, double down, double seconds) 
   return from + std::clamp(to - from, -most, most);
 }
 
-float signed_distance(float front, float rear, float half, float x, float y) {
-  const float dx = std::max(x - front, -rear - x), dy = std::abs(y) - half;
-  const float ox = std::max(dx, 0.0f), oy = std::max(dy, 0.0f);
-  return std::sqrt(ox * ox + oy * oy) + std::min(std::max(dx, dy), 0.0f);
+sweep::Box box(const Footprint& f) {
+  return {static_cast<float>(f.front), static_cast<float>(f.rear), static_cast<float>(f.half_width)};
 }
 
 }  // namespace
@@ -44,36 +44,26 @@ std::vector<Pose> way_of(const Twist& measured, std::span<const DueCommand> comm
 }
 
 double signed_distance(const Footprint& f, Point p) {
-  return signed_distance(static_cast<float>(f.front), static_cast<float>(f.rear), static_cast<float>(f.half_width),
-                         static_cast<float>(p.x), static_cast<float>(p.y));
+  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y);
+  return sweep::least_distance(box(f), 0.0f, 0.0f, 1.0f, 0.0f, &x, &y, nullptr, 1);
 }
 
 bool stays_clear(const Footprint& footprint, double margin, std::span<const Point> points, std::span<const Pose> way) {
   double reach = 0.0;
   for (const Pose& pose : way) reach = std::max(reach, norm(pose.position()));
   reach += footprint.circumscribed() + margin;
-  const float front = static_cast<float>(footprint.front), rear = static_cast<float>(footprint.rear);
-  const float half = static_cast<float>(footprint.half_width);
   std::vector<float> xs, ys, allowed;
   for (const Point& p : points) {
-    if (norm(p) > reach) continue;
+    if (!(norm(p) <= reach)) continue;
     xs.push_back(static_cast<float>(p.x));
     ys.push_back(static_cast<float>(p.y));
-    const float now = signed_distance(front, rear, half, xs.back(), ys.back());
-    allowed.push_back(std::min(static_cast<float>(margin), now) - slack);
+    allowed.push_back(static_cast<float>(std::min(margin, signed_distance(footprint, p))) - slack);
   }
-  for (const Pose& pose : way) {
-    const float c = static_cast<float>(std::cos(pose.theta)), s = static_cast<float>(std::sin(pose.theta));
-    const float px = static_cast<float>(pose.x), py = static_cast<float>(pose.y);
-    float worst = 1.0f;
-    for (std::size_t i = 0; i < xs.size(); ++i) {
-      const float dx = xs[i] - px, dy = ys[i] - py;
-      const float d = signed_distance(front, rear, half, c * dx + s * dy, c * dy - s * dx);
-      worst = std::min(worst, d - allowed[i]);
-    }
-    if (worst < 0.0f) return false;
-  }
-  return true;
+  return std::all_of(way.begin(), way.end(), [&](const Pose& pose) {
+    return sweep::least_distance(box(footprint), static_cast<float>(pose.x), static_cast<float>(pose.y),
+                                 static_cast<float>(std::cos(pose.theta)), static_cast<float>(std::sin(pose.theta)),
+                                 xs.data(), ys.data(), allowed.data(), xs.size()) >= 0.0f;
+  });
 }
 
 }  // namespace robot

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double far_away = 1e9;           // m
 constexpr double sharp_band = 0.3;         // m round hazards within which distances are exact
-constexpr double near_by = 0.15;           // m; nearer hazards are looked at between the cells' centres
+constexpr double near_by = 0.06;           // m; nearer hazards are looked at between the cells' centres
 constexpr double outward_at_least = 0.17;  // sine of the least angle by which motion must point out of a hazard
 
 // Lowers a field to the exact distance from a polygon's edges within sharp_band of them.
@@ -78,13 +78,15 @@ double VirtualSensors::signed_distance(Point point) const {
 // Metres from a point along a direction to the first hazard, at most `limit`: as far as the nearest hazard is away it
 // can be walked at once. Half a cell before it is there: hazards may be thinner than a cell.
 double VirtualSensors::cast(Point from, Point direction, double limit) const {
-  const double half = 0.5 * distance_.resolution();
+  const double half = 0.5 * distance_.resolution(), off_centre = std::sqrt(2.0) * half, cells = 1.0 / (2.0 * half);
+  const double x0 = from.x - distance_.origin().x, y0 = from.y - distance_.origin().y;
   double way = 0.0;
   while (way < limit) {
-    const Point p = from + way * direction;
-    double free = signed_distance(p) - 2.0 * half;  // the nearest centre may lie on the safe side
-    if (free < near_by && distance_.contains(p)) {
-      free = interpolate(distance_, p).value;
+    const double x = (x0 + way * direction.x) * cells, y = (y0 + way * direction.y) * cells;
+    if (!(x >= 0.0 && y >= 0.0 && x < distance_.width() && y < distance_.height())) return limit;
+    double free = distance_[{static_cast<int>(x), static_cast<int>(y)}] - off_centre;  // the centre may be farther away
+    if (free < near_by) {
+      free = interpolate(distance_, from + way * direction).value;
       if (free <= half) return way;
     }
     way += std::max(free, half);

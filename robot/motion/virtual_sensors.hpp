@@ -14,7 +14,7 @@ namespace robot {
 
 struct VirtualSensorsConfig {
   int directions = 120;      // over the full turn
-  double max_range = 3.0;    // m; farther hazards give no reading
+  double max_range = 2.5;    // m; farther hazards give no reading
   double likelihood = 0.99;  // that a reading underestimates the distance
   double trust = 0.02;       // m added to the map's own inaccuracy: readings are shortened by it
 };
