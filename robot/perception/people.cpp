@@ -2,86 +2,86 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <optional>
+
+#include "robot/geometry/polygon.hpp"
 
 namespace robot {
 namespace {
 
-constexpr std::size_t max_tracks = 400;
+constexpr double first_speed = 1.0;  // m/s, one standard deviation of somebody just seen
+constexpr double fastest = 2.0;      // m/s; faster is a mistaken match
+constexpr double close_range = 3.0;  // m within which a person meets several beams
+constexpr int most_ahead_beams = 2;  // beams in a row that may miss within one body
 
-// Bodies side by side: a wide cluster is cut into as many as fit.
-void split_cluster(const ScanView& scan, std::size_t first, std::size_t last, const PeopleConfig& config,
-                   std::vector<PersonBody>& bodies) {
-  const auto end_of = [&](std::size_t i) {
-    const double bearing = scan.angle_min + static_cast<double>(i) * scan.angle_step;
-    return scan.map_from_laser * Point{scan.ranges[i] * std::cos(bearing), scan.ranges[i] * std::sin(bearing)};
-  };
-  const int beams = static_cast<int>(last - first + 1);
-  double nearest = scan.ranges[first];
-  for (std::size_t i = first; i <= last; ++i) nearest = std::min(nearest, static_cast<double>(scan.ranges[i]));
-  if (beams < config.min_beams && nearest < 3.0) return;
-  const double width = distance(end_of(first), end_of(last));
-  const int parts = std::max(1, std::min(beams, static_cast<int>(std::ceil(width / config.max_width))));
-  for (int part = 0; part < parts; ++part) {
-    const std::size_t from = first + static_cast<std::size_t>(beams * part / parts);
-    const std::size_t to = first + static_cast<std::size_t>(beams * (part + 1) / parts);
-    Point sum;
-    for (std::size_t i = from; i < to; ++i) sum = sum + end_of(i);
-    const Point middle = (1.0 / static_cast<double>(to - from)) * sum;
-    // Beams end on the near side: the body's middle lies behind it.
-    const Point out = middle - scan.map_from_laser.position();
-    const double far = norm(out);
-    bodies.push_back(
-        {far > 1e-6 ? middle + (0.5 * config.body_radius / far) * out : middle, static_cast<int>(to - from)});
+struct Cluster {
+  std::vector<Point> ends;  // laser frame
+  double range_sum = 0.0;   // m
+};
+
+// Beams that follow each other and end near each other.
+std::vector<Cluster> clusters_of(const ScanView& scan, const PeopleConfig& config) {
+  std::vector<Cluster> clusters;
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double range = scan.ranges[i];
+    if (scan.kinds[i] != BeamKind::person || !(range > 0.0) || !(range <= config.max_range)) continue;
+    const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_step;
+    const Point end{range * std::cos(angle), range * std::sin(angle)};
+    const bool joins =
+        !clusters.empty() && i - last <= 1 + most_ahead_beams &&
+        distance(clusters.back().ends.back(), end) <= std::max(config.gap, 3.0 * range * scan.angle_step);
+    if (!joins) clusters.emplace_back();
+    clusters.back().ends.push_back(end);
+    clusters.back().range_sum += range;
+    last = i;
   }
+  return clusters;
 }
 
 }  // namespace
 
 std::vector<PersonBody> find_bodies(const ScanView& scan, const PeopleConfig& config) {
   std::vector<PersonBody> bodies;
-  const std::size_t beams = std::min(scan.ranges.size(), scan.kinds.size());
-  const auto meets_person = [&](std::size_t i) {
-    return scan.kinds[i] == BeamKind::person && std::isfinite(scan.ranges[i]) && scan.ranges[i] < config.max_range;
-  };
-  for (std::size_t i = 0; i < beams;) {
-    if (!meets_person(i)) {
-      ++i;
-      continue;
+  if (scan.kinds.size() != scan.ranges.size() || !is_finite(scan.map_from_laser)) return bodies;
+  for (const Cluster& cluster : clusters_of(scan, config)) {
+    const int beams = static_cast<int>(cluster.ends.size());
+    const double range = cluster.range_sum / beams;
+    if (beams < config.min_beams && range < close_range) continue;
+    // Wider than one body: several people side by side share it evenly.
+    const double width = distance(cluster.ends.front(), cluster.ends.back());
+    const int people = std::min(beams, 1 + static_cast<int>(width / config.max_width));
+    for (int k = 0; k < people; ++k) {
+      const int from = beams * k / people, to = beams * (k + 1) / people;
+      Point sum;
+      for (int i = from; i < to; ++i) sum = sum + cluster.ends[static_cast<std::size_t>(i)];
+      const Point near_side = (1.0 / (to - from)) * sum;
+      const Point center = ((norm(near_side) + config.body_radius) / norm(near_side)) * near_side;
+      bodies.push_back({scan.map_from_laser * center, to - from});
     }
-    std::size_t last = i;
-    for (std::size_t next = i + 1; next < beams && next <= last + 2; ++next) {
-      if (!meets_person(next)) continue;
-      const double angle = static_cast<double>(next - last) * scan.angle_step;
-      const double a = scan.ranges[last], b = scan.ranges[next];
-      const double apart = std::sqrt(std::max(0.0, a * a + b * b - 2.0 * a * b * std::cos(angle)));
-      if (apart > config.gap + 0.02 * a) break;
-      last = next;
-    }
-    split_cluster(scan, i, last, config, bodies);
-    i = last + 1;
   }
   return bodies;
 }
 
+// Constant velocity with random acceleration; x and y are alike and independent.
 void PeopleTracker::predict(Track& track, Time to) const {
-  const double dt = Seconds(to - track.time).count();
-  if (dt <= 0.0) return;
+  const double dt = std::max(0.0, Seconds(to - track.time).count());
+  const double q = config_.acceleration * config_.acceleration;
   track.position = track.position + dt * track.velocity;
-  const double q = config_.acceleration * config_.acceleration * dt;
-  track.var_position += 2.0 * dt * track.var_cross + dt * dt * track.var_velocity + q * dt * dt / 3.0;
-  track.var_cross += dt * track.var_velocity + q * dt / 2.0;
-  track.var_velocity += q;
-  track.time = to;
+  track.var_position += dt * (2.0 * track.var_cross + dt * track.var_velocity) + 0.25 * q * dt * dt * dt * dt;
+  track.var_cross += dt * track.var_velocity + 0.5 * q * dt * dt * dt;
+  track.var_velocity += q * dt * dt;
+  track.time = std::max(track.time, to);
 }
 
 void PeopleTracker::correct(Track& track, Point measured) const {
-  const double innovation = track.var_position + config_.position_noise * config_.position_noise;
-  const double gain = track.var_position / innovation, gain_velocity = track.var_cross / innovation;
+  const double noise = config_.position_noise * config_.position_noise, total = track.var_position + noise;
+  const double gain = track.var_position / total, gain_velocity = track.var_cross / total;
   const Point off = measured - track.position;
   track.position = track.position + gain * off;
   track.velocity = track.velocity + gain_velocity * off;
-  if (const double speed = norm(track.velocity); speed > 2.5) track.velocity = (2.5 / speed) * track.velocity;
+  const double speed = norm(track.velocity);
+  if (speed > fastest) track.velocity = (fastest / speed) * track.velocity;
   track.var_velocity -= gain_velocity * track.var_cross;
   track.var_cross *= 1.0 - gain;
   track.var_position *= 1.0 - gain;
@@ -89,82 +89,68 @@ void PeopleTracker::correct(Track& track, Point measured) const {
 
 void PeopleTracker::add(const ScanView& scan) {
   for (Track& track : tracks_) predict(track, scan.time);
-  // Nearest pairs first: each body belongs to at most one track.
+  std::vector<PersonBody> bodies = find_bodies(scan, config_);
+  // Nearest pairs first, each track and body once.
   struct Pair {
-    double apart;
+    double away;
     std::size_t track, body;
   };
-  const std::vector<PersonBody> bodies = find_bodies(scan, config_);
   std::vector<Pair> pairs;
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const double apart = distance(tracks_[t].position, bodies[b].position);
-      if (apart < config_.gate) pairs.push_back({apart, t, b});
+      const double away = distance(tracks_[t].position, bodies[b].position);
+      if (away <= config_.gate) pairs.push_back({away, t, b});
     }
   }
-  std::ranges::sort(pairs, {}, [](const Pair& p) { return std::tuple(p.apart, p.track, p.body); });
-  std::vector<bool> followed(tracks_.size(), false), taken(bodies.size(), false);
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.away < b.away; });
+  std::vector<bool> track_taken(tracks_.size()), body_taken(bodies.size());
   for (const Pair& pair : pairs) {
-    // A second body beside a followed track is that person's other leg, not somebody new.
-    if (followed[pair.track] && !taken[pair.body] && pair.apart < 0.5 * config_.gate) taken[pair.body] = true;
-    if (followed[pair.track] || taken[pair.body]) continue;
-    followed[pair.track] = taken[pair.body] = true;
+    if (track_taken[pair.track] || body_taken[pair.body]) continue;
+    track_taken[pair.track] = body_taken[pair.body] = true;
     Track& track = tracks_[pair.track];
     correct(track, bodies[pair.body].position);
     track.seen = scan.time;
     ++track.sightings;
   }
-  for (std::size_t b = 0; b < bodies.size() && tracks_.size() < max_tracks; ++b) {
-    if (taken[b]) continue;
-    tracks_.push_back({.id = next_id_++,
-                       .time = scan.time,
-                       .seen = scan.time,
-                       .position = bodies[b].position,
-                       .velocity = {},
-                       .var_position = config_.position_noise * config_.position_noise,
-                       .var_cross = 0.0,
-                       .var_velocity = 0.5,
-                       .sightings = 1});
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (body_taken[b] || tracks_.size() >= config_.most_people) continue;
+    Track track{next_id_++, scan.time, scan.time, bodies[b].position, {}, 0.0, 0.0, 0.0, 1};
+    track.var_position = config_.position_noise * config_.position_noise;
+    track.var_velocity = first_speed * first_speed;
+    tracks_.push_back(track);
   }
   std::erase_if(tracks_, [&](const Track& track) { return scan.time - track.seen > config_.lost_after; });
 }
 
 People PeopleTracker::people(Time now) const {
-  People all{.time = now, .people = {}};
+  People people{now, {}};
   for (const Track& track : tracks_) {
     if (track.sightings < config_.confirm_after || now - track.seen > config_.lost_after) continue;
-    Track ahead = track;
-    predict(ahead, now);
-    all.people.push_back({.position = ahead.position, .velocity = ahead.velocity, .id = track.id});
+    const double dt = std::clamp(Seconds(now - track.time).count(), 0.0, config_.lost_after.count());
+    people.people.push_back({track.position + dt * track.velocity, track.velocity, track.id});
   }
-  return all;
+  return people;
 }
 
 int people_within(const People& people, Point center, double radius) {
-  return static_cast<int>(std::ranges::count_if(
-      people.people, [&](const PersonSeen& p) { return distance(p.position, center) <= radius; }));
+  return static_cast<int>(std::count_if(people.people.begin(), people.people.end(), [&](const PersonSeen& person) {
+    return distance(person.position, center) <= radius;
+  }));
 }
 
 int people_on_path(const People& people, const std::vector<Point>& path, double ahead, double half_width) {
-  const auto on_leg = [&](Point p, Point a, Point b) {
-    const Point leg = b - a;
-    const double length2 = dot(leg, leg);
-    const double share = length2 > 0.0 ? std::clamp(dot(p - a, leg) / length2, 0.0, 1.0) : 0.0;
-    return distance(p, a + share * leg) <= half_width;
-  };
-  int count = 0;
-  for (const PersonSeen& person : people.people) {
-    double left = ahead;
-    for (std::size_t i = 0; i + 1 < path.size() && left > 0.0; ++i) {
+  const auto blocks = [&](const PersonSeen& person) {
+    double along = 0.0;
+    for (std::size_t i = 0; i + 1 < path.size() && along < ahead; ++i) {
       const double length = distance(path[i], path[i + 1]);
-      const Point end = length > left ? path[i] + (left / length) * (path[i + 1] - path[i]) : path[i + 1];
-      left -= length;
-      if (!on_leg(person.position, path[i], end)) continue;
-      ++count;
-      break;
+      const double share = length > 0.0 ? std::min(1.0, (ahead - along) / length) : 1.0;
+      const Point end = path[i] + share * (path[i + 1] - path[i]);
+      if (distance_to_segment(person.position, path[i], end) <= half_width) return true;
+      along += length;
     }
-  }
-  return count;
+    return false;
+  };
+  return static_cast<int>(std::count_if(people.people.begin(), people.people.end(), blocks));
 }
 
 }  // namespace robot

@@ -2,7 +2,7 @@
 // are followed through time with constant velocity, so that each person has a place, a motion and an id that stays.
 #pragma once
 
-#include <span>
+#include <cstddef>
 #include <vector>
 
 #include "robot/outputs.hpp"
@@ -11,16 +11,17 @@
 namespace robot {
 
 struct PeopleConfig {
-  double max_range = 8.0;        // m; farther away too few beams meet a person
-  double gap = 0.25;             // m between beam ends within which they belong together
-  double body_radius = 0.2;      // m; beams meet the near side of a body
-  double max_width = 0.9;        // m; wider clusters are several people side by side
-  int min_beams = 2;             // a single beam within 3 m is noise
-  double gate = 0.6;             // m between a track's prediction and a body
-  double acceleration = 1.5;     // m/s2, one standard deviation of how people change their mind
-  double position_noise = 0.08;  // m, one standard deviation of a body's place
-  Seconds lost_after{1.0};       // a track unseen for so long is dropped
-  int confirm_after = 3;         // sightings before a track counts as a person
+  double max_range = 8.0;         // m; farther away too few beams meet a person
+  double gap = 0.25;              // m between beam ends within which they belong together
+  double body_radius = 0.2;       // m; beams meet the near side of a body
+  double max_width = 0.9;         // m; wider clusters are several people side by side
+  int min_beams = 2;              // a single beam within 3 m is noise
+  double gate = 0.6;              // m between a track's prediction and a body
+  double acceleration = 1.5;      // m/s2, one standard deviation of how people change their mind
+  double position_noise = 0.08;   // m, one standard deviation of a body's place
+  Seconds lost_after{1.0};        // a track unseen for so long is dropped
+  std::size_t most_people = 100;  // tracks at a time
+  int confirm_after = 3;          // sightings before a track counts as a person
 };
 
 // A body in one scan, map frame.

@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "robot/geometry/random.hpp"
 #include "tests/support/matchers.hpp"
 
 namespace robot {
@@ -13,83 +15,116 @@ namespace {
 
 using testing::PointNear;
 
-// What a laser at the origin sees of round bodies of 0.2 m on an open floor.
-ScanView scan_of(const std::vector<Point>& people, Time time) {
-  ScanView scan{.time = time,
-                .laser = LaserId::front,
-                .map_from_laser = {},
-                .angle_min = -pi / 2,
-                .angle_step = pi / 180,
-                .ranges = {},
-                .kinds = {}};
+struct Walker {
+  Point position;
+  Point velocity;
+};
+
+// A scan of 181 beams over a hall in which round people of 0.2 m stand; everything else is the map, 8 m away.
+ScanView scan_of(const std::vector<Walker>& walkers, const Pose& map_from_laser, Time time, Random& random) {
+  ScanView scan;
+  scan.time = time;
+  scan.map_from_laser = map_from_laser;
+  scan.angle_min = -pi / 2;
+  scan.angle_step = pi / 180;
   for (int i = 0; i < 181; ++i) {
-    const double bearing = scan.angle_min + i * scan.angle_step;
-    const Point along{std::cos(bearing), std::sin(bearing)};
-    double range = std::numeric_limits<double>::infinity();
-    for (const Point& p : people) {
-      const double middle = dot(p, along), off = cross(p, along);
-      if (middle > 0.0 && std::abs(off) < 0.2) range = std::min(range, middle - std::sqrt(0.04 - off * off));
+    const double angle = map_from_laser.theta + scan.angle_min + i * scan.angle_step;
+    const Point ray{std::cos(angle), std::sin(angle)};
+    double range = 8.0;
+    for (const Walker& walker : walkers) {
+      const Point center = walker.position - map_from_laser.position();
+      const double along = dot(center, ray), half = 0.04 - std::pow(cross(ray, center), 2);
+      if (half > 0.0 && along > 0.0) range = std::min(range, along - std::sqrt(half));
     }
-    const bool met = std::isfinite(range);
-    scan.ranges.push_back(met ? static_cast<float>(range) : std::numeric_limits<float>::quiet_NaN());
-    scan.kinds.push_back(met ? BeamKind::person : BeamKind::no_return);
+    scan.kinds.push_back(range < 8.0 ? BeamKind::person : BeamKind::map);
+    scan.ranges.push_back(static_cast<float>(range + random.normal(0.01)));
   }
   return scan;
 }
 
-TEST(FindBodies, FindsEachPersonOnce) {
-  const auto bodies = find_bodies(scan_of({{2, 0}, {3, 2}, {1, -1.5}}, {}));
-  ASSERT_EQ(bodies.size(), 3u);
-  EXPECT_THAT(bodies[0].position, PointNear(Point{1, -1.5}, 0.12));
-  EXPECT_THAT(bodies[1].position, PointNear(Point{2, 0}, 0.12));
-  EXPECT_THAT(bodies[2].position, PointNear(Point{3, 2}, 0.12));
+TEST(FindBodies, TwoPeopleApartAreTwoBodies) {
+  Random random(1);
+  const auto bodies = find_bodies(scan_of({{{3, 1}, {}}, {{2, -1}, {}}}, {}, {}, random));
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_THAT(bodies[0].position, PointNear(Point{2, -1}, 0.1));
+  EXPECT_THAT(bodies[1].position, PointNear(Point{3, 1}, 0.1));
 }
 
-TEST(FindBodies, LeavesOutTheMapAndWhatIsTooFar) {
-  ScanView scan = scan_of({{2, 0}, {9, 0.5}}, {});
-  EXPECT_EQ(find_bodies(scan).size(), 1u);
-  for (BeamKind& kind : scan.kinds) kind = BeamKind::map;
-  EXPECT_TRUE(find_bodies(scan).empty());
+TEST(FindBodies, AWideClusterIsSeveralPeople) {
+  Random random(1);
+  const auto bodies = find_bodies(scan_of({{{2, -0.4}, {}}, {{2, 0}, {}}, {{2, 0.4}, {}}}, {}, {}, random));
+  EXPECT_GE(bodies.size(), 2u);
+  EXPECT_LE(bodies.size(), 3u);
 }
 
-TEST(FindBodies, TakesBrokenScansWithoutHarm) {
-  ScanView scan = scan_of({{2, 0}}, {});
-  scan.kinds.resize(60);
-  EXPECT_TRUE(find_bodies(scan).empty());
-  scan.ranges.clear();
-  EXPECT_TRUE(find_bodies(scan).empty());
+TEST(FindBodies, TheMapNoiseAndBrokenScansAreNobody) {
+  Random random(1);
+  EXPECT_TRUE(find_bodies(scan_of({}, {}, {}, random)).empty());
+  ScanView single = scan_of({}, {}, {}, random);
+  single.kinds[40] = BeamKind::person;
+  single.ranges[40] = 1.0f;
+  EXPECT_TRUE(find_bodies(single).empty());
+  ScanView nothing = scan_of({{{2, 0}, {}}}, {}, {}, random);
+  for (auto& range : nothing.ranges) range = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(find_bodies(nothing).empty());
+  ScanView broken = scan_of({{{2, 0}, {}}}, {}, {}, random);
+  broken.kinds.resize(3);
+  EXPECT_TRUE(find_bodies(broken).empty());
 }
 
-TEST(PeopleTracker, FollowsWalkersAndKeepsTheirIds) {
+TEST(PeopleTracker, FollowsWalkersWithStableIdsAndTheirVelocity) {
+  Random random(2);
+  std::vector<Walker> walkers = {{{1, -2}, {0.3, 0.8}}, {{4, 2}, {-0.6, 0.0}}, {{2, 1.5}, {0, 0}}};
   PeopleTracker tracker;
-  for (int i = 0; i <= 40; ++i) {
-    const double t = 0.05 * i;
-    tracker.add(scan_of({{3, -1 + t}, {3, 1.5 - t}}, from_seconds(t)));  // they pass each other
+  std::vector<int> ids;
+  for (int i = 0; i < 60; ++i) {
+    const Time now = from_seconds(0.05 * i);
+    tracker.add(scan_of(walkers, {-0.5, 0, 0.1}, now, random));
+    const People seen = tracker.people(now);
+    if (i == 20) {
+      for (const auto& person : seen.people) ids.push_back(person.id);
+    }
+    if (i > 20) {
+      ASSERT_EQ(seen.people.size(), ids.size());
+      for (std::size_t k = 0; k < ids.size(); ++k) EXPECT_EQ(seen.people[k].id, ids[k]);
+    }
+    for (Walker& walker : walkers) walker.position = walker.position + 0.05 * walker.velocity;
   }
-  const People people = tracker.people(from_seconds(2.0));
-  ASSERT_EQ(people.people.size(), 2u);
-  EXPECT_NEAR(std::abs(people.people[0].velocity.y), 1.0, 0.25);
-  EXPECT_NE(people.people[0].id, people.people[1].id);
+  ASSERT_EQ(ids.size(), 3u);
+  const People people = tracker.people(from_seconds(3.0));
+  for (const Walker& walker : walkers) {
+    EXPECT_THAT(people.people, ::testing::Contains(::testing::Truly([&](const PersonSeen& person) {
+                  return distance(person.position, walker.position) < 0.2 &&
+                         distance(person.velocity, walker.velocity) < 0.25;
+                })));
+  }
 }
 
-TEST(PeopleTracker, NeedsSeveralSightingsAndForgets) {
+TEST(PeopleTracker, WhoIsGoneIsForgottenAfterASecond) {
+  Random random(3);
   PeopleTracker tracker;
-  tracker.add(scan_of({{2, 0}}, from_seconds(0)));
-  EXPECT_TRUE(tracker.people(from_seconds(0)).people.empty());
-  for (int i = 1; i < 5; ++i) tracker.add(scan_of({{2, 0}}, from_seconds(0.05 * i)));
-  EXPECT_EQ(tracker.people(from_seconds(0.2)).people.size(), 1u);
-  EXPECT_TRUE(tracker.people(from_seconds(2.0)).people.empty());
+  for (int i = 0; i < 10; ++i) tracker.add(scan_of({{{2, 0}, {}}}, {}, from_seconds(0.05 * i), random));
+  EXPECT_EQ(tracker.people(from_seconds(0.5)).people.size(), 1u);
+  EXPECT_EQ(tracker.people(from_seconds(2.0)).people.size(), 0u);
+  for (int i = 10; i < 40; ++i) tracker.add(scan_of({}, {}, from_seconds(0.05 * i), random));
+  EXPECT_TRUE(tracker.people(from_seconds(1.95)).people.empty());
 }
 
-TEST(People, AreCountedNearAndOnTheWay) {
-  const People people{.time = {},
-                      .people = {{.position = {1, 0.2}, .velocity = {}, .id = 1},
-                                 {.position = {4, 0}, .velocity = {}, .id = 2},
-                                 {.position = {1, 2}, .velocity = {}, .id = 3}}};
-  EXPECT_EQ(people_within(people, {0, 0}, 2.5), 2);
-  EXPECT_EQ(people_on_path(people, {{0, 0}, {5, 0}}, 3.0, 0.6), 1);
-  EXPECT_EQ(people_on_path(people, {{0, 0}, {5, 0}}, 6.0, 0.6), 2);
-  EXPECT_EQ(people_on_path(people, {}, 6.0, 0.6), 0);
+TEST(PeopleTracker, AGlimpseIsNobodyYet) {
+  Random random(3);
+  PeopleTracker tracker;
+  for (int i = 0; i < 2; ++i) tracker.add(scan_of({{{2, 0}, {}}}, {}, from_seconds(0.05 * i), random));
+  EXPECT_TRUE(tracker.people(from_seconds(0.1)).people.empty());
+}
+
+TEST(People, AreCountedNearAndOnThePath) {
+  People people;
+  people.people = {{{1, 0}, {}, 1}, {{4, 0.2}, {}, 2}, {{0, 2.5}, {}, 3}};
+  EXPECT_EQ(people_within(people, {0, 0}, 3.0), 2);
+  const std::vector<Point> path = {{0, 0}, {2, 0}, {6, 0}};
+  EXPECT_EQ(people_on_path(people, path, 3.0, 0.5), 1);
+  EXPECT_EQ(people_on_path(people, path, 5.0, 0.5), 2);
+  EXPECT_EQ(people_on_path(people, {}, 5.0, 0.5), 0);
 }
 
 }  // namespace
