@@ -29,8 +29,8 @@ class Journal {
   template <typename T>
   net::awaitable<T> ask(std::function<T(Store&)> question) {
     Store& store = *store_;
-    co_return co_await net::co_spawn(
-        worker_, [&store, question]() -> net::awaitable<T> { co_return question(store); }, net::use_awaitable);
+    const auto work = [&store, question]() -> net::awaitable<T> { co_return question(store); };
+    co_return co_await net::co_spawn(worker_, work, net::use_awaitable);
   }
 
   bool healthy() const { return healthy_; }

@@ -215,8 +215,10 @@ net::awaitable<Reply> Web::Parts::durable(Call& call, std::function<net::awaitab
   if (!key.empty()) {
     keys_in_progress_.insert(key);
     in_progress = std::shared_ptr<void>(nullptr, [this, key](void*) { keys_in_progress_.erase(key); });
-    const auto given =
-        co_await journal->ask<std::optional<StoredAnswer>>([key](Store& store) { return store.find_answer(key); });
+    const std::function<std::optional<StoredAnswer>(Store&)> question = [key](Store& store) {
+      return store.find_answer(key);
+    };
+    const auto given = co_await journal->ask(question);
     if (given && given->fingerprint != fingerprint) {
       co_return problem_reply(
           {422, "idempotency_key_reused", "That Idempotency-Key was used for something else.", "Idempotency-Key"});

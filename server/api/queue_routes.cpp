@@ -28,8 +28,10 @@ net::awaitable<std::optional<robot::Request>> find(Web::Parts& web, const std::s
   const auto id = id_of(text);
   if (!id || *id > static_cast<robot::RequestId>(std::numeric_limits<std::int64_t>::max())) co_return std::nullopt;
   if (const robot::Request* request = web.view->request(*id)) co_return *request;
-  const auto stored = co_await web.journal->ask<std::optional<StoredRequest>>(
-      [id = *id](Store& store) { return store.find_request(id); });
+  const std::function<std::optional<StoredRequest>(Store&)> question = [id = *id](Store& store) {
+    return store.find_request(id);
+  };
+  const auto stored = co_await web.journal->ask(question);
   if (!stored) co_return std::nullopt;
   robot::Request request = stored->request;
   request.asked = web.view->now() - robot::Seconds(wall_now() - stored->asked);
@@ -47,7 +49,7 @@ net::awaitable<Reply> ask(Web::Parts& web, Call& call) {
   const auto& body = std::get<QueueBody>(decoded);
   const auto made = std::make_shared<std::vector<robot::RequestId>>();
   const robot::RequestVisit visit{0, web.requester(call, body.name), body.target};
-  const auto make = [&web, &call, visit, made]() -> net::awaitable<Reply> {
+  const std::function<net::awaitable<Reply>()> make = [&web, &call, visit, made]() -> net::awaitable<Reply> {
     const auto answer = co_await web.desk.ask(visit, web.options.limits.answer, true);
     if (!answer)
       co_return web.unavailable("robot_silent", "The robot did not answer in time; the request was not accepted.");
@@ -60,7 +62,7 @@ net::awaitable<Reply> ask(Web::Parts& web, Call& call) {
     Reply reply = show(call, *known, 201);
     co_return reply.with("Location", "/api/v1/queue/" + std::to_string(id));
   };
-  const auto undo = [&web, made] {
+  const std::function<void()> undo = [&web, made] {
     for (const robot::RequestId id : *made) web.desk.tell(robot::CancelRequest{0, id, {}, true});
   };
   co_return co_await web.durable(call, make, undo);
@@ -69,8 +71,8 @@ net::awaitable<Reply> ask(Web::Parts& web, Call& call) {
 net::awaitable<Reply> cancel(Web::Parts& web, Call& call) {
   const auto request = co_await find(web, call.parameters[0]);
   if (!request) co_return unknown_request();
-  const auto answer =
-      co_await web.desk.ask(robot::CancelRequest{0, request->id, call.session, call.staff}, web.options.limits.answer);
+  const robot::CancelRequest event{0, request->id, call.session, call.staff};
+  const auto answer = co_await web.desk.ask(event, web.options.limits.answer);
   if (!answer) co_return web.unavailable("robot_silent", "The robot did not answer in time.");
   // A request of an earlier run that is over is unknown to the robot of this one.
   const bool over = answer->refusal == robot::Refusal::unknown_request;

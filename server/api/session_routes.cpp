@@ -24,8 +24,10 @@ net::awaitable<Reply> sign_in(Web::Parts& web, Call& call, const std::string& pa
         {403, "no_password", "No staff password is configured: staff work on the robot's own machine.", ""});
   }
   // Argon2 takes its time on purpose: not on the web's thread.
-  const bool good = co_await web.journal->ask<bool>(
-      [configured = web.options.staff_password, password](Store&) { return password_matches(configured, password); });
+  const std::function<bool(Store&)> check = [configured = web.options.staff_password, password](Store&) {
+    return password_matches(configured, password);
+  };
+  const bool good = co_await web.journal->ask(check);
   if (!good) co_return problem_reply({401, "wrong_password", "That is not the staff password.", "password"});
   // A new cookie: whoever knew the old one does not become staff with it.
   const std::string cookie = new_cookie();

@@ -36,10 +36,11 @@ net::awaitable<void> watch(Web::Parts& web, std::string session, bool staff, tcp
     web.hub.leave(viewer);
     web.cameras.update_wanted();
   });
-  co_await viewer->socket->run([&web, &viewer](const std::string& text) {
+  const WebSocket::OnText on_text = [&web, &viewer](const std::string& text) {
     web.hub.receive(*viewer, text);
     web.cameras.update_wanted();
-  });
+  };
+  co_await viewer->socket->run(on_text);
 }
 
 Reply handshake(Web::Parts& web, Call& call) {

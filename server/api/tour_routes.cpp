@@ -26,7 +26,7 @@ net::awaitable<Reply> start(Web::Parts& web, Call& call) {
   const auto& body = std::get<protocols::web::TourBody>(decoded);
   const auto made = std::make_shared<std::vector<robot::RequestId>>();
   const robot::StartTour event{0, web.requester(call, body.name), body.tour};
-  const auto make = [&web, event, made]() -> net::awaitable<Reply> {
+  const std::function<net::awaitable<Reply>()> make = [&web, event, made]() -> net::awaitable<Reply> {
     const auto answer = co_await web.desk.ask(event, web.options.limits.answer, true);
     if (!answer)
       co_return web.unavailable("robot_silent", "The robot did not answer in time; the tour was not accepted.");
@@ -45,7 +45,7 @@ net::awaitable<Reply> start(Web::Parts& web, Call& call) {
                              201);
     co_return reply.with("Location", "/api/v1/tours/current");
   };
-  const auto undo = [&web, made] {
+  const std::function<void()> undo = [&web, made] {
     for (const robot::RequestId id : *made) web.desk.tell(robot::CancelRequest{0, id, {}, true});
   };
   co_return co_await web.durable(call, make, undo);
@@ -53,7 +53,8 @@ net::awaitable<Reply> start(Web::Parts& web, Call& call) {
 
 net::awaitable<Reply> tell(Web::Parts& web, Call& call, robot::TourAnswer choice) {
   if (!web.may_answer_tour(call)) co_return problem_reply(problem_of(robot::Refusal::not_yours));
-  const auto answer = co_await web.desk.ask(robot::AnswerTour{0, choice}, web.options.limits.answer);
+  const robot::AnswerTour event{0, choice};
+  const auto answer = co_await web.desk.ask(event, web.options.limits.answer);
   if (!answer) co_return web.unavailable("robot_silent", "The robot did not answer in time.");
   if (answer->refusal != robot::Refusal::none) co_return problem_reply(problem_of(answer->refusal));
   const char* word = choice == robot::TourAnswer::more      ? "more"

@@ -1,4 +1,6 @@
 // Boost.Asio as the web server uses it: one thread, coroutines, errors as values.
+//
+// g++ 12 destroys temporaries of class type among the arguments of a co_await twice: give them names first.
 #pragma once
 
 #include <utility>  // before awaitable.hpp: Boost 1.81 forgets it under g++ 12
