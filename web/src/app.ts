@@ -52,7 +52,8 @@ async function loadPart(part: Part, attempt: number): Promise<void> {
     if (attempt + 1 < tries) {
       setTimeout(() => void loadPart(part, attempt + 1), 700 * 2 ** attempt);
     } else if (store.state[part].state !== "ready") {
-      store.set({ [part]: { state: "failed", problem: problemOf(error) } } as Partial<State>);
+      const problem = problemOf(error);
+      store.set({ [part]: { state: "failed", problem: { ...problem, code: `${part}: ${problem.status || problem.code}` } } } as Partial<State>);
     }
   }
 }
@@ -60,7 +61,7 @@ async function loadPart(part: Part, attempt: number): Promise<void> {
 async function loadMap(): Promise<MapImage> {
   const info = await api.map();
   const answer = await fetch(info.url, { credentials: "same-origin" });
-  if (!answer.ok) throw new ProblemError({ title: "", status: answer.status, detail: "", code: `map: ${answer.status}` });
+  if (!answer.ok) throw new ProblemError({ title: "", status: answer.status, detail: "", code: "map_png" });
   return { ...info, cells: await greyCells(await answer.blob(), info) };
 }
 
@@ -68,7 +69,7 @@ async function loadMap(): Promise<MapImage> {
 async function greyCells(picture: Blob, info: MapInfo): Promise<Uint8Array> {
   const bitmap = await createImageBitmap(picture, { colorSpaceConversion: "none", premultiplyAlpha: "none" });
   if (bitmap.width !== info.width || bitmap.height !== info.height) {
-    throw new ProblemError({ title: "", status: 0, detail: "", code: "map: size" });
+    throw new ProblemError({ title: "", status: 0, detail: "", code: "size" });
   }
   const canvas = document.createElement("canvas");
   canvas.width = info.width;

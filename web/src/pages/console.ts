@@ -68,7 +68,7 @@ class DocentConsole extends LitElement {
 
   // Space stops wherever the focus is, but for text being typed.
   private spaceStops(e: KeyboardEvent): void {
-    if (e.code !== "Space" || e.repeat) return;
+    if (e.code !== "Space" || e.repeat || !store.state.session.staff) return;
     const at = e.target as HTMLElement;
     if (at instanceof HTMLInputElement && at.type !== "radio" && at.type !== "checkbox") return;
     e.preventDefault();
@@ -101,7 +101,7 @@ class DocentConsole extends LitElement {
         <div class="end">${lineState(w.console.connected, false)}
           ${s.status?.battery === null || !s.status ? nothing : html`<span class="kv" aria-label=${`${w.console.battery} ${Math.round(s.status.battery * 100)} %`}>${icon("battery")}<b>${Math.round(s.status.battery * 100)} %</b></span>`}
           ${themeSwitch()}${languageSwitch()}</div>
-        <div class="stopbox">${this.stopPart()}</div></header>
+        <div class="stopbox">${this.known && !s.session.staff ? nothing : this.stopPart()}</div></header>
       ${this.known && !s.session.staff ? this.signIn() : html`<main data-line=${s.link.state}>
         ${this.nowPart()}<div class="col a">${this.healthPart()}${this.modePart()}${this.figures()}</div>
         ${this.planPart()}

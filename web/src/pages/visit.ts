@@ -75,7 +75,7 @@ class DocentVisit extends LitElement {
     const lost = s.link.state === "lost";
     return html`
       <a class="skip btn main" href="#queue">${w.skip}</a>
-      <header class="top">
+      <header class="top" data-line=${s.link.state}>
         <a class="brand" href="/">${mark}Docent${s.site.state === "ready" ? html`<span class="house">${say(s.site.value.title)}</span>` : nothing}</a>
         <nav><button class="link" @click=${() => this.querySelector("dialog")!.showModal()}>${w.howItWorks}</button></nav>
         <div class="end">${lineState(w.live, true)}${themeSwitch()}${languageSwitch()}</div>

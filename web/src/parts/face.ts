@@ -1,7 +1,6 @@
 // <docent-face mood talks>: the robot's face. Its shapes live in face.css; the eyes look where the robot turns.
 import { LitElement, svg } from "lit";
-import { store, t, Watch } from "../app";
-import { Ticking } from "../app";
+import { store, t, Ticking, Watch } from "../app";
 import { moodOf, type Mood } from "../mood";
 import { saying } from "../store";
 
@@ -17,7 +16,7 @@ export class DocentFace extends LitElement {
   constructor() {
     super();
     this.fixed = "";
-    new Watch(this, (s) => [s.status, s.speech, s.prefs.lang, Math.round((s.pose?.angular ?? 0) * 5)]);
+    new Watch(this, (s) => [s.status, s.speech, s.prefs.lang, s.link.state, Math.round((s.pose?.angular ?? 0) * 5)]);
     new Ticking(this, 1000, () => store.state.status?.activity === "waiting" || store.state.speech !== null);
   }
   protected override createRenderRoot(): HTMLElement {
@@ -27,8 +26,8 @@ export class DocentFace extends LitElement {
   override render() {
     const s = store.state, now = Date.now();
     if (s.status?.activity !== "waiting") this.waitingSince = now;
-    const mood = this.fixed || moodOf(s.status, s.speech, (now - this.waitingSince) / 1000);
     const live = s.link.state === "live";
+    const mood = this.fixed || (live ? moodOf(s.status, s.speech, (now - this.waitingSince) / 1000) : "neutral");
     this.dataset.mood = mood;
     this.classList.toggle("talks", live && !this.fixed && saying(s, now) !== null);
     this.classList.toggle("alive", live);
