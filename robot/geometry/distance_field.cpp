@@ -115,10 +115,10 @@ FieldSample interpolate(const DistanceField& field, Point point) {
   const double a = cu - x, b = cv - y;
   const double f00 = field[{x, y}], f10 = field[{x1, y}], f01 = field[{x, y1}], f11 = field[{x1, y1}];
   const double low = f00 + a * (f10 - f00), high = f01 + a * (f11 - f01);
-  FieldSample sample{low + b * (high - low), {}};
-  if (cu == u) sample.gradient.x = ((f10 - f00) * (1 - b) + (f11 - f01) * b) / r;
-  if (cv == v) sample.gradient.y = (high - low) / r;
-  return sample;
+  const FieldSample sample{low + b * (high - low), {((f10 - f00) * (1 - b) + (f11 - f01) * b) / r, (high - low) / r}};
+  const double beyond = std::hypot(u - cu, v - cv);
+  if (beyond == 0.0) return sample;
+  return {sample.value + beyond * r, {(u - cu) / beyond, (v - cv) / beyond}};
 }
 
 }  // namespace robot

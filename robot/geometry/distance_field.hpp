@@ -27,7 +27,7 @@ struct FieldSample {
   Point gradient;      // m a m
 };
 
-// Bilinear between the four nearest centres; beyond the outermost centres the border's value with zero gradient.
+// Bilinear between the four nearest centres; beyond the outermost centres the border's value and the way back to it.
 // The field must not be empty.
 FieldSample interpolate(const DistanceField& field, Point point);
 

@@ -12,6 +12,7 @@ namespace {
 constexpr int block = 32;      // positions scored together: one vector register of bytes
 constexpr int best_value = 4;  // of an end point in the coarse map; times coarse_beams it must fit a byte
 constexpr int blocks_a_unit = 2000;
+constexpr std::size_t states_a_unit = 500;
 
 // How good an end point is whose coarse cell has its nearest surface this far away (m).
 std::uint8_t value_of(float distance) {
@@ -27,6 +28,19 @@ std::vector<T> thinned(const std::vector<T>& all, int at_most) {
   std::vector<T> some;
   for (int i = 0; i < at_most; ++i)
     some.push_back(all[all.size() * static_cast<std::size_t>(i) / static_cast<std::size_t>(at_most)]);
+  return some;
+}
+
+// One end point a square of this size: somebody who stands close fills many beams but few squares.
+std::vector<Point> spread_out(const std::vector<Point>& ends, double square) {
+  std::vector<Point> some;
+  std::vector<std::pair<long, long>> taken;
+  for (const Point& end : ends) {
+    const std::pair<long, long> at{std::lround(end.x / square), std::lround(end.y / square)};
+    if (std::find(taken.begin(), taken.end(), at) != taken.end()) continue;
+    taken.push_back(at);
+    some.push_back(end);
+  }
   return some;
 }
 
@@ -87,21 +101,20 @@ GlobalSearch::GlobalSearch(const OccupancyGrid& map, const RayCaster& caster, co
 void GlobalSearch::start(Look look) {
   look_ = std::move(look);
   beams_.clear();
+  std::vector<Point> ends;
   for (auto& laser : look_.lasers) {
+    for (const Beam& beam : laser.beams) ends.push_back(beam.end);
     laser.beams = thinned(laser.beams, std::max(1, config_.beams / static_cast<int>(look_.lasers.size())));
     beams_.insert(beams_.end(), laser.beams.begin(), laser.beams.end());
   }
-  ends_.clear();
-  std::vector<Point> near_ends;
-  for (const Beam& beam : beams_) {
-    ends_.push_back(beam.end);
-    if (norm(beam.end) < config_.max_range) near_ends.push_back(beam.end);
-  }
-  coarse_ends_ = thinned(near_ends, std::min(config_.coarse_beams, 255 / best_value));
+  ends_ = spread_out(ends, 0.5 * config_.cell);
+  std::erase_if(ends, [&](Point end) { return norm(end) >= config_.max_range; });
+  coarse_ends_ = thinned(spread_out(ends, config_.cell), std::min(config_.coarse_beams, 255 / best_value));
   states_.clear();
   candidates_.clear();
   peaks_.clear();
   next_ = 0;
+  picked_ = 0;
   row_ = 0;
   // A place that explains less than a fifth of a look is no place.
   floor_ = static_cast<std::uint8_t>(coarse_ends_.size() * best_value / 5);
@@ -120,9 +133,13 @@ bool GlobalSearch::step(int units) {
         if (heading_ + 1 < headings_) {
           set_heading(heading_ + 1);
         } else {
-          pick_candidates();
+          trim();
+          std::sort(states_.begin(), states_.end(), better);
+          stage_ = Stage::picking;
         }
       }
+    } else if (stage_ == Stage::picking) {
+      pick_candidates();
     } else if (next_ < candidates_.size()) {
       align(candidates_[next_++]);
     } else {
@@ -178,9 +195,7 @@ void GlobalSearch::keep(std::uint8_t score, int heading, int row, int column) {
 
 // Drops all but the best; whatever scores no better than the worst of them is not even collected from now on.
 void GlobalSearch::trim() {
-  const auto better = [](const State& a, const State& b) {
-    return a.score != b.score ? a.score > b.score : a.place < b.place;
-  };
+  if (static_cast<int>(states_.size()) <= config_.kept) return;
   const auto last = states_.begin() + config_.kept;
   std::nth_element(states_.begin(), last, states_.end(), better);
   floor_ = std::max(floor_, last->score);
@@ -194,18 +209,18 @@ Pose GlobalSearch::pose_of(const State& state) const {
           wrap_angle(heading * 2.0 * pi / headings_)};
 }
 
+// Goes down the list of coarse states, a slice at a time, and takes each that is far enough from all taken before.
 void GlobalSearch::pick_candidates() {
-  std::sort(states_.begin(), states_.end(),
-            [](const State& a, const State& b) { return a.score != b.score ? a.score > b.score : a.place < b.place; });
-  for (const State& state : states_) {
-    if (static_cast<int>(candidates_.size()) >= config_.candidates) break;
-    const Pose pose = pose_of(state);
+  const std::size_t end = std::min(states_.size(), picked_ + states_a_unit);
+  for (; picked_ < end && static_cast<int>(candidates_.size()) < config_.candidates; ++picked_) {
+    const Pose pose = pose_of(states_[picked_]);
     const bool fresh = std::none_of(candidates_.begin(), candidates_.end(), [&](const Pose& other) {
       return distance(pose.position(), other.position()) < config_.apart_metres &&
              std::abs(wrap_angle(pose.theta - other.theta)) < config_.apart_radians;
     });
     if (fresh) candidates_.push_back(pose);
   }
+  if (picked_ < states_.size() && static_cast<int>(candidates_.size()) < config_.candidates) return;
   states_.clear();
   stage_ = Stage::fine;
 }
@@ -213,10 +228,10 @@ void GlobalSearch::pick_candidates() {
 // The best of a small lattice round the coarse place, then Gauss-Newton, then the beam model.
 void GlobalSearch::align(const Pose& start) {
   std::vector<double> x, y, theta;
-  for (int i = 0; i < 125; ++i) {
-    x.push_back(start.x + 0.1 * (i % 5 - 2));
-    y.push_back(start.y + 0.1 * (i / 5 % 5 - 2));
-    theta.push_back(start.theta + 0.5 * config_.heading * (i / 25 - 2));
+  for (int i = 0; i < 7 * 7 * 7; ++i) {
+    x.push_back(start.x + 0.1 * (i % 7 - 3));
+    y.push_back(start.y + 0.1 * (i / 7 % 7 - 3));
+    theta.push_back(start.theta + 0.7 * config_.heading * (i / 49 - 3));
   }
   std::vector<float> fit(x.size());
   field_.weigh(x, y, theta, ends_, fit);

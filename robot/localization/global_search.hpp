@@ -21,7 +21,7 @@ struct GlobalSearchConfig {
   double max_range = 20.0;      // m: longer beams are too sensitive to heading for the coarse look
   int coarse_beams = 60;        // at most, over all scans; their scores fit a byte
   int beams = 120;              // at most, for the fine look
-  int kept = 20000;             // coarse states kept
+  int kept = 8000;              // coarse states kept
   int candidates = 150;         // places aligned finely
   double apart_metres = 0.5;
   double apart_radians = radians(8);
@@ -62,7 +62,11 @@ class GlobalSearch {
     std::uint8_t score;
     std::uint32_t place;  // heading-major index
   };
-  enum class Stage { idle, coarse, fine };
+  // A total order, so that the same look finds the same places.
+  static bool better(const State& a, const State& b) {
+    return a.score != b.score ? a.score > b.score : a.place < b.place;
+  }
+  enum class Stage { idle, coarse, picking, fine };
 
   void set_heading(int heading);
   void score_row(int row);
@@ -92,7 +96,7 @@ class GlobalSearch {
   std::uint8_t floor_ = 0;
   std::vector<State> states_;
   std::vector<Pose> candidates_;
-  std::size_t next_ = 0;
+  std::size_t picked_ = 0, next_ = 0;
   std::vector<Peak> peaks_;
 };
 

@@ -74,11 +74,11 @@ TEST(Interpolate, IsExactOnAPlaneAndGivesItsGradient) {
   EXPECT_THAT(sample.gradient, PointNear(Point{0.25, -0.5}, 1e-6));
 }
 
-TEST(Interpolate, OutsideIsTheBordersValueWithoutSlope) {
+TEST(Interpolate, OutsideItGrowsWithTheWayBackToTheBorder) {
   const auto field = distance_field(ascii_world(0.1, {"....", "....", "#..."}));
-  const auto sample = interpolate(field, {9.0, -4.0});
-  EXPECT_FLOAT_EQ(static_cast<float>(sample.value), 0.3f);
-  EXPECT_EQ(sample.gradient, (Point{0.0, 0.0}));
+  const auto sample = interpolate(field, {9.35, 0.05});
+  EXPECT_NEAR(sample.value, 0.3 + 9.0, 1e-6);
+  EXPECT_THAT(sample.gradient, PointNear(Point{1.0, 0.0}, 1e-9));
 }
 
 }  // namespace
