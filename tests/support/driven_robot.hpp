@@ -36,6 +36,7 @@ class DrivenRobot {
   const Twist& twist() const { return twist_; }
   const Body& body() const { return body_; }
   std::vector<Disc>& discs() { return discs_; }
+  const std::vector<Disc>& discs() const { return discs_; }
 
   // Drives for some seconds with a new command, which reaches the wheels late.
   void drive(const Twist& command, double seconds) {
