@@ -14,7 +14,7 @@
 namespace tools {
 
 struct PublicConfig {
-  double requests_per_hour = 40.0;
+  double requests_per_hour = 50.0;
   double tour_share = 0.04;    // of the wishes
   double point_share = 0.08;   // places on the map instead of exhibits
   double kiosk_share = 0.3;    // the rest comes from the web
