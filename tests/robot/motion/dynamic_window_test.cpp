@@ -266,13 +266,17 @@ RC_GTEST_PROP(DynamicWindowProperty, DoesNotRunIntoWalkers, (std::uint64_t seed)
     const double angle = random.uniform(-pi, pi), speed = random.chance(0.3) ? 0.0 : random.uniform(0.3, 1.0);
     drive.robot.discs().push_back({p, {speed * std::cos(angle), speed * std::sin(angle)}});
   }
+  std::vector<bool> touching(drive.robot.discs().size());
   for (int i = 0; i < 20 * 30 && drive.choice.state != MotionState::arrived; ++i) {
     drive.tick();
-    for (Disc& disc : drive.robot.discs()) {
+    for (std::size_t k = 0; k < touching.size(); ++k) {
+      Disc& disc = drive.robot.discs()[k];
       if (disc.position.x < 0.5 || disc.position.x > 13.5) disc.velocity.x *= -1.0;
       if (disc.position.y < 0.5 || disc.position.y > 7.5) disc.velocity.y *= -1.0;
       const Point seen = inverse(drive.robot.pose()) * disc.position;
-      if (distance_to(drive.robot.body().footprint, seen) >= disc.radius) continue;
+      const bool touched_before = touching[k];
+      touching[k] = distance_to(drive.robot.body().footprint, seen) < disc.radius;
+      if (!touching[k] || touched_before) continue;  // the first touch tells whose fault it is
       // At fault is who closed the gap faster: the body at the place of contact, or they.
       const Twist& twist = drive.robot.twist();
       const Point touch{std::clamp(seen.x, -0.3, 0.3), std::clamp(seen.y, -0.26, 0.26)};
