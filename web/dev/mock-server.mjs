@@ -294,7 +294,7 @@ const server = createServer(async (q, a) => {
   const sent = body ? JSON.parse(body) : {};
   const path0 = url.pathname.replace("/api/v1/", "");
   const lang = url.searchParams.get("lang") ?? "en";
-  const mustBeStaff = () => staff.has(session) || (problem(403, "forbidden", "Only staff can do this."), false);
+  const mustBeStaff = () => staff.has(session) || (problem(403, "staff_only", "Only staff can do this."), false);
   if (process.env.MOCK_FAIL?.split(",").includes(path0)) return problem(503, "unavailable", "made up failure");
   if (url.pathname.startsWith("/api/v1/")) {
     switch (`${q.method} ${path0.replace(/^queue\/.*/, "queue/id")}`) {
@@ -308,7 +308,7 @@ const server = createServer(async (q, a) => {
       case "GET queue": return json(200, publicQueue(session));
       case "GET session": return json(200, { name: "", staff: staff.has(session), languages: ["en", "de"] });
       case "POST session":
-        if (sent.password !== undefined && sent.password !== "docent") return problem(403, "forbidden", "wrong password");
+        if (sent.password !== undefined && sent.password !== "docent") return problem(401, "wrong_password", "wrong password");
         if (sent.password) staff.add(session);
         return json(200, { name: sent.name ?? "", staff: staff.has(session), languages: ["en", "de"] });
       case "GET health": return json(200, health());

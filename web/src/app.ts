@@ -2,7 +2,7 @@
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 import { api, ProblemError } from "./api";
 import { isLang, pick, wordsOf, type Words } from "./i18n";
-import { Store, value, type Loaded, type MapImage, type State, type Theme } from "./store";
+import { Store, type Loaded, type MapImage, type State, type Theme } from "./store";
 import { browserSurroundings, Connection } from "./wire/connection";
 import type { Frame, Lang, MapInfo, Problem, Text } from "./wire/types";
 
@@ -25,7 +25,9 @@ export const connection = new Connection(
     }
     const epoch = store.state.epoch;
     store.take(message);
-    if (message.type === "hello" && epoch !== "" && epoch !== message.epoch) loadMuseum();
+    if (message.type !== "hello") return;
+    if (epoch !== "" && epoch !== message.epoch) loadMuseum();
+    api.queue().then((queue) => store.set({ queue }), () => {}); // also when nobody has asked for anything yet
   },
   (link) => store.set({ link }),
 );
@@ -47,7 +49,6 @@ async function loadPart(part: Part, attempt: number): Promise<void> {
   try {
     const loaded: Loaded<unknown> = { state: "ready", value: await loaders[part]() };
     store.set({ [part]: loaded } as Partial<State>);
-    if (part === "cameras") subscribe();
   } catch (error) {
     if (attempt + 1 < tries) {
       setTimeout(() => void loadPart(part, attempt + 1), 700 * 2 ** attempt);
@@ -89,13 +90,18 @@ async function greyCells(picture: Blob, info: MapInfo): Promise<Uint8Array> {
 // ---- Start ---------------------------------------------------------------------------------------------------------------
 
 let wanted: string[] = [];
+let watched: string[] = []; // ids of the cameras being shown
 const always = ["pose", "status", "queue", "speech", "request", "viewers"];
-const wantsCameras = () => wanted.includes("camera");
+
+// The pictures of these cameras and no others.
+export function watchCameras(ids: string[]): void {
+  watched = ids;
+  subscribe();
+}
 
 // While nobody looks, only what is needed to be right at the next look.
 function subscribe(): void {
-  const cameras = wantsCameras() ? (value(store.state.cameras) ?? []).map((c) => `camera:${c.id}`) : [];
-  connection.subscribe(document.hidden ? always : [...new Set([...always, ...wanted.filter((t) => t !== "camera"), ...cameras])]);
+  connection.subscribe(document.hidden ? always : [...new Set([...always, ...wanted, ...watched.map((id) => `camera:${id}`)])]);
 }
 
 export function start(topics: string[]): void {
@@ -170,9 +176,6 @@ export function problemWords(error: unknown): string {
   const problem = problemOf(error);
   const known = t().problems[problem.code];
   if (known) return known;
-  if (problem.status === 401) return t().problems.unauthorized!;
-  if (problem.status === 403) return t().problems.forbidden!;
-  if (problem.status === 429) return t().problems.rate_limited!;
   return lang() === "en" && problem.detail ? problem.detail : t().problem(problem.code);
 }
 

@@ -135,7 +135,7 @@ class DocentConsole extends LitElement {
       location.reload(); // the line has to be opened anew as staff
     } catch (error) {
       const status = (error as { problem?: { status?: number } }).problem?.status;
-      this.badPassword = status === 401 || status === 403 ? t().console.wrongPassword : problemWords(error);
+      this.badPassword = status === 401 ? t().console.wrongPassword : problemWords(error);
     }
   }
 
@@ -234,4 +234,4 @@ function deviceTrouble(d: Device): string {
   return d.ageSeconds !== null && d.ageSeconds > staleAfter ? t().console.silentFor(`${Math.round(d.ageSeconds)} s`) : "";
 }
 
-start(["path", "people", "scan", "belief", "velocity_space", "health", "note", "camera"]);
+start(["path", "people", "scan", "belief", "velocity_space", "health", "note"]);

@@ -62,7 +62,18 @@ class DocentVisit extends LitElement {
   private plan(): DocentPlan | null {
     return this.querySelector<DocentPlan>("docent-plan");
   }
+  // The card covers part of the plan; what it is about stays in sight beside it.
+  private roomFor: Card | null = null;
+  private makeRoom(): void {
+    if (this.roomFor === this.card) return;
+    this.roomFor = this.card;
+    const plan = this.plan(), at = this.placeOf(this.card);
+    const card = this.querySelector<HTMLElement>("docent-exhibit-card, docent-place-card");
+    const wide = plan && card && plan.clientWidth > card.offsetWidth * 1.5;
+    plan?.makeRoom(wide ? at : null, card?.classList.contains("at-left") ? "left" : "right", (card?.offsetWidth ?? 0) + 12);
+  }
   protected override updated(): void {
+    this.makeRoom();
     const site = value(store.state.site);
     if (site && !this.settled) {
       this.settled = true;
@@ -142,12 +153,19 @@ class DocentVisit extends LitElement {
   }
   // The card opens on the side away from what it is about, so that it covers neither the robot nor the exhibit.
   private sideOf(card: Card): string {
-    const plan = this.plan();
-    const exhibit = card.kind === "exhibit" ? value(store.state.exhibits)?.find((e) => e.id === card.id) : null;
-    const at: Point | null = card.kind === "place" ? card.at : exhibit ? [exhibit.x, exhibit.y] : null;
+    if (this.roomFor === card) return this.side;
+    const plan = this.plan(), at = this.placeOf(card);
     const page = at && plan?.pageOf(at);
     const box = plan?.getBoundingClientRect();
-    return page && box && page[0] > box.left + box.width / 2 ? "at-left" : "at-right";
+    this.side = page && box && page[0] > box.left + box.width / 2 ? "at-left" : "at-right";
+    return this.side;
+  }
+  private side = "at-right";
+  private placeOf(card: Card | null): Point | null {
+    if (!card) return null;
+    if (card.kind === "place") return card.at;
+    const exhibit = value(store.state.exhibits)?.find((e) => e.id === card.id);
+    return exhibit ? [exhibit.x, exhibit.y] : null;
   }
 
   private openExhibit(id: string): void {
@@ -178,4 +196,4 @@ class DocentVisit extends LitElement {
 }
 customElements.define("docent-visit", DocentVisit);
 
-start(["path", "people", "scan", "camera"]);
+start(["path", "people", "scan"]);

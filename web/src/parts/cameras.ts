@@ -1,15 +1,17 @@
-// <docent-cameras>: the robot's eyes large and the wall camera in the corner, or the other way round; side="true": both beside each
+// <docent-cameras>: the robot's eyes large and a wall camera in the corner, or the other way round; side: one below the
 // other. Each picture is decoded only when it is about to be shown, the newest of each camera.
 import { LitElement, html, nothing } from "lit";
-import { onFrame, say, store, t, Watch } from "../app";
+import { keyed } from "lit/directives/keyed.js";
+import { onFrame, say, store, t, Watch, watchCameras } from "../app";
 import { clock } from "../i18n";
 import { value } from "../store";
 import type { Camera, Frame } from "../wire/types";
 
 export class DocentCameras extends LitElement {
-  static override properties = { side: { type: Boolean }, large: { state: true }, seen: { state: true } };
+  static override properties = { side: { type: Boolean }, large: { state: true }, small: { state: true }, seen: { state: true } };
   declare side: boolean;
   declare large: string; // id of the camera shown large
+  declare small: string; // id of the one in the corner
   declare seen: number; // how many cameras have shown a picture
   private readonly newest = new Map<number, Frame>();
   private readonly busy = new Set<number>();
@@ -21,7 +23,7 @@ export class DocentCameras extends LitElement {
   constructor() {
     super();
     this.side = false;
-    this.large = "";
+    this.large = this.small = "";
     this.seen = 0;
     new Watch(this, (s) => [s.cameras, s.prefs.lang, s.link.state]);
   }
@@ -79,25 +81,44 @@ export class DocentCameras extends LitElement {
     for (const camera of this.shown.keys()) this.draw(camera);
   }
 
+  // Two cameras are shown, so that a museum with many does not flood the line; the others wait by name.
+  private chosen(): { main: Camera; inset: Camera | null; others: Camera[] } | null {
+    const cameras = value(store.state.cameras) ?? [];
+    const main = cameras.find((c) => c.id === this.large) ?? cameras.find((c) => c.kind === "onboard") ?? cameras[0];
+    if (!main) return null;
+    const rest = cameras.filter((c) => c !== main);
+    const inset = rest.find((c) => c.id === this.small) ?? rest[0] ?? null;
+    return { main, inset, others: rest.filter((c) => c !== inset) };
+  }
+  private swap(): void {
+    const now = this.chosen();
+    if (!now?.inset) return;
+    this.large = now.inset.id;
+    this.small = now.main.id;
+  }
+
   override render() {
     const s = store.state, w = t();
     const cameras = value(s.cameras) ?? [];
+    const now = this.chosen();
     if (s.cameras.state === "loading") return html`<div class="sk" aria-hidden="true"></div>`;
-    if (cameras.length === 0) return html`<p class="none">${w.noCameras}</p>`;
-    const indexOf = (c: Camera) => cameras.indexOf(c);
-    const title = (c: Camera) => (c.kind === "onboard" ? w.eyes : say(c.title) || w.wall);
-    const canvas = (c: Camera) => html`<canvas data-camera=${indexOf(c)} data-id=${c.id} width=${c.width} height=${c.height} role="img" aria-label=${title(c)}></canvas>`;
+    if (!now) return html`<p class="none">${w.noCameras}</p>`;
+    const { main, inset, others } = now;
+    watchCameras(inset ? [main.id, inset.id] : [main.id]);
+    const title = (c: Camera) => (c.kind === "onboard" ? (this.side ? w.console.onboard : w.eyes) : say(c.title) || w.wall);
+    const canvas = (c: Camera) => html`<canvas data-camera=${cameras.indexOf(c)} data-id=${c.id} width=${c.width} height=${c.height} role="img" aria-label=${title(c)}></canvas>`;
+    const others_ = others.length === 0 ? nothing : html`<div class="others" role="group" aria-label=${w.otherCameras}>${others.map((c) => html`<button class="tag" @click=${() => (this.small = c.id)}>${title(c)}</button>`)}</div>`;
     this.dataset.lost = String(s.link.state === "lost");
-    if (this.side) return cameras.map((c) => html`<figure>${canvas(c)}<figcaption class="tag">${c.kind === "onboard" ? w.console.onboard : title(c)}</figcaption></figure>`);
-    const main = cameras.find((c) => c.id === this.large) ?? cameras.find((c) => c.kind === "onboard") ?? cameras[0]!;
-    const others = cameras.filter((c) => c !== main);
+    if (this.side) {
+      return html`<figure>${keyed(main.id, canvas(main))}<figcaption class="tag">${title(main)}</figcaption></figure>
+        ${inset ? html`<figure>${keyed(inset.id, canvas(inset))}<figcaption class="tag">${title(inset)}</figcaption>${others_}</figure>` : nothing}`;
+    }
     const lost = s.link.state === "lost" && this.shownAt > 0;
     return html`
-      <div class="main">${canvas(main)}</div>
+      <div class="main">${keyed(main.id, canvas(main))}</div>
       <span class="tag">${lost ? w.lastPicture(clock(this.shownAt, s.prefs.lang)) : title(main)}</span>
-      ${this.seen === 0 ? html`<span class="hint">${w.noPicture}</span>` : nothing}
-      <div class="pips">${others.map((c) => html`<button class="pip" @click=${() => (this.large = c.id)} aria-label=${w.showLarge(title(c))}>${canvas(c)}
-        <span class="tag" aria-hidden="true">${c.kind === "onboard" ? w.eyes : title(c)}</span></button>`)}</div>`;
+      ${this.seen === 0 ? html`<span class="hint">${w.noPicture}</span>` : others_}
+      ${inset ? html`<button class="pip" @click=${() => this.swap()} aria-label=${w.showLarge(title(inset))}>${keyed(inset.id, canvas(inset))}<span class="tag" aria-hidden="true">${title(inset)}</span></button>` : nothing}`;
   }
 }
 customElements.define("docent-cameras", DocentCameras);

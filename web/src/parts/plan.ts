@@ -12,7 +12,7 @@ import { paintLive } from "../plan/live";
 import { Motion } from "../plan/motion";
 import { PeopleDots } from "../plan/people";
 import { remaining, Trail } from "../plan/path";
-import { clampView, distance, fit, fitScale, inside, panBy, toMap, toScreen, zoomAt, type View } from "../plan/view";
+import { clampView, type Covered, distance, fit, fitScale, inside, panBy, toMap, toScreen, zoomAt, type View } from "../plan/view";
 import type { Point, Pose } from "../wire/types";
 
 export interface Layers {
@@ -57,6 +57,7 @@ export class DocentPlan extends LitElement {
   private formerly: Pose | null = null; // where it was before it was placed anew
   private jumpedAt = -Infinity;
   private seen = { pose: null as unknown, people: null as unknown, scanAt: 0, belief: null as unknown, path: null as unknown, link: null as unknown };
+  private covered: Covered = { left: 0, right: 0 };
   private clear: Point | null = null; // where it stops: no name there
   private dash = 0;
   private cross = false;
@@ -158,6 +159,15 @@ export class DocentPlan extends LitElement {
   isHazard(at: Point): boolean {
     return (value(store.state.site)?.hazards ?? []).some((h) => inside(h.polygon, at));
   }
+  // Something covers the plan from one side: moves it aside so that the point stays in sight. Without a point: back again.
+  makeRoom(at: Point | null, side: "left" | "right", px: number): void {
+    this.covered = { left: at && side === "left" ? px : 0, right: at && side === "right" ? px : 0 };
+    const v = this.target;
+    if (!v) return;
+    const x = at ? toScreen(v, at)[0] : 0, margin = 70;
+    const low = this.covered.left + margin, high = v.width - this.covered.right - margin;
+    this.aim(at && low < high ? { ...v, x: v.x + (x < low ? x - low : x > high ? x - high : 0) / v.scale } : v);
+  }
   // Where a point of the map is on the screen, in CSS pixels of the page.
   pageOf(at: Point): Point | null {
     if (!this.view) return null;
@@ -172,7 +182,7 @@ export class DocentPlan extends LitElement {
     return { minX: b.minX - m, minY: b.minY - m, maxX: b.maxX + m, maxY: b.maxY + m };
   }
   aim(v: View, instant = false): void {
-    this.target = clampView(v, this.padded());
+    this.target = clampView(v, this.padded(), this.covered);
     if (instant || still.matches) this.view = this.target;
     this.groundDirty = true;
   }
@@ -260,7 +270,7 @@ export class DocentPlan extends LitElement {
 
   private moveView(dt: number): void {
     let target = this.target!;
-    if (this.follow && this.shown) target = this.target = clampView({ ...target, x: this.shown.x, y: this.shown.y }, this.padded());
+    if (this.follow && this.shown) target = this.target = clampView({ ...target, x: this.shown.x, y: this.shown.y }, this.padded(), this.covered);
     const v = this.view!;
     const far = Math.hypot(target.x - v.x, target.y - v.y) * v.scale + Math.abs(Math.log(target.scale / v.scale)) * 200;
     if (far < 0.05) return;

@@ -37,10 +37,10 @@ export function placeLabels(anchors: Anchor[], taken: Box[], busy: (box: Box) =>
     let best: { placed: Placed; box: Box } | null = null, bestCost = Infinity;
     candidates(anchor, window).forEach((candidate, choice) => {
       const cover = boxes.reduce((sum, box) => sum + overlap(candidate.box, box), 0) / area(candidate.box);
-      const cost = cover * 4 + busy(candidate.box) * 2 + choice * 0.12;
+      const cost = cover * 5 + busy(candidate.box) * 3 + choice * 0.08;
       if (cost < bestCost) (best = candidate), (bestCost = cost);
     });
-    if (!best || (bestCost > (anchor.on ? 0.3 : 1.1) && !anchor.must)) continue;
+    if (!best || (bestCost > (anchor.on ? 0.3 : 1) && !anchor.must)) continue;
     const chosen = best as { placed: Placed; box: Box };
     out.push(chosen.placed);
     boxes.push(chosen.box);
@@ -62,7 +62,11 @@ function candidates(a: Anchor, window: Box): { placed: Placed; box: Box }[] {
     };
   };
   if (a.on) return [make("center", x, y - h / 2)];
-  return [make("center", x, below), make("center", x, above), make("left", right, y - h / 2), make("right", left, y - h / 2)];
+  const aside = a.width * 0.28;
+  return [
+    make("center", x, below), make("center", x, above), make("left", right, y - h / 2), make("right", left, y - h / 2), make("center", x - aside, below),
+    make("center", x + aside, below), make("center", x - aside, above), make("center", x + aside, above),
+  ];
 }
 function area(b: Box): number {
   return Math.max(1, (b.x1 - b.x0) * (b.y1 - b.y0));

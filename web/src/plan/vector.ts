@@ -68,7 +68,7 @@ function near(mask: Mask, width: number, height: number, i: number, j: number, r
 
 // The borders of the mask as closed rings in metres: fill with the even-odd rule. `tolerance` in cells: how far a smoothed line may
 // leave the cell edges; right angles stay.
-export function outlines(mask: Mask, map: MapInfo, tolerance = 0.75): Point[][] {
+export function outlines(mask: Mask, map: MapInfo, tolerance = 1.6): Point[][] {
   const rings = trace(mask, map.width, map.height);
   return rings.map((ring) => simplify(ring, tolerance).map(([i, j]) => [map.origin.x + i * map.resolution, map.origin.y + j * map.resolution] as Point));
 }

@@ -40,12 +40,18 @@ export function panBy(v: View, dx: number, dy: number): View {
   return { ...v, x: v.x - dx / v.scale, y: v.y + dy / v.scale };
 }
 
+// Pixels beside the plan that something else covers: so far may the plan be moved aside.
+export interface Covered {
+  left: number;
+  right: number;
+}
+
 const closest = 160; // px per m
 // Keeps the scale between the whole plan and arm's length, and the plan inside the window.
-export function clampView(v: View, b: Bounds): View {
+export function clampView(v: View, b: Bounds, covered: Covered = { left: 0, right: 0 }): View {
   const whole = fitScale(b, v.width, v.height);
   const scale = Math.min(Math.max(closest, whole), Math.max(whole, v.scale));
-  return { ...v, scale, x: clampAxis(v.x, b.minX, b.maxX, v.width / scale), y: clampAxis(v.y, b.minY, b.maxY, v.height / scale) };
+  return { ...v, scale, x: clampAxis(v.x, b.minX - covered.left / scale, b.maxX + covered.right / scale, v.width / scale), y: clampAxis(v.y, b.minY, b.maxY, v.height / scale) };
 }
 function clampAxis(centre: number, min: number, max: number, shown: number): number {
   if (shown >= max - min) return (min + max) / 2;
