@@ -80,7 +80,7 @@ class Server {
 
   void run() {
     runner_->handle(web_->remember());
-    web_->start();
+    listen();
     net::post(robot_io_, [this] {
       wires_->start();
       runner_->start();
@@ -128,6 +128,15 @@ class Server {
       net::post(web_io_, [this, outputs = std::move(outputs), now]() mutable { web_->take(std::move(outputs), now); });
     };
     return sinks;
+  }
+
+  void listen() {
+    try {
+      web_->start();
+    } catch (const boost::system::system_error& error) {
+      throw std::runtime_error("cannot listen on " + options_.bind + ":" + std::to_string(options_.port) + ": " +
+                               error.code().message() + "; choose another port with --port");
+    }
   }
 
   // What the simulated visitors hear, and what staff should find in the log.
