@@ -47,12 +47,15 @@ struct Localizer::Parts {
   Parts(const Parts&) = delete;  // parts refer to each other
 
   enum class Phase { blind, tracking };
-  // The last scan of each laser: what a search looks at.
+  // What each laser said last: what a search looks at, and when the samples were last weighed by it.
   struct Glance {
-    LaserId laser;
+    LaserId laser = LaserId::front;
     Beams beams;
     Pose odom_from_base;
     Time time;
+    Pose weighed_odom;
+    Time weighed_at;
+    bool weighed = false;
   };
 
   LocalizerConfig config;
@@ -69,7 +72,6 @@ struct Localizer::Parts {
   std::optional<Pose> odom_now;   // newest odometry
   std::optional<Pose> odom_then;  // odometry at the samples' time
   MotionStep since;               // way and turns since then
-  Time weighed_at;
   int weighed = 0;
   Cluster best;                                                    // heaviest lump at the samples' time
   Eigen::Matrix3d predicted_covariance = Eigen::Matrix3d::Zero();  // of its belief before the last scan was weighed
@@ -79,7 +81,9 @@ struct Localizer::Parts {
   Pose pose;       // refined estimate ...
   Pose pose_odom;  // ... and the odometry it belongs to
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  double offset = 0.0;      // m, learned
+  double offset = 0.0;  // m, learned so far
+  int offsets_learned = 0;
+  double explained = 1.0;   // share of the beams that met the map, moving average
   double usual_far = 0.05;  // share of impossible beams, slow average
 
   std::vector<Glance> glances;
@@ -103,7 +107,7 @@ struct Localizer::Parts {
   void doubt(const Beams& beams, const ScanReading& reading);
   void learn_offset(const ScanMatch& match);
   void judge_state(const ScanReading& reading);
-  void glance(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom);
+  Glance& glance(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom);
   Look look_from(const Pose& odom) const;
   void adopt_search();
   ScanReading read_blindly(const LaserScan& scan, const Pose& map_from_laser) const;
@@ -169,7 +173,6 @@ void Localizer::Parts::take_in(const LaserScan& scan, const Pose& base_from_lase
   const Beams beams = comb(scan, base_from_laser);
   advance(odom);
   weigh(beams, temper);
-  weighed_at = scan.time;
   const bool agrees = refine(scan, base_from_laser, odom);
   if (agrees && larger_axis(covariance) < 0.3) {
     filter.infuse({pose, larger_axis(covariance), heading_sigma(covariance), 1.0}, config.match_share);
@@ -228,12 +231,16 @@ void Localizer::Parts::doubt(const Beams& beams, const ScanReading& reading) {
 
 void Localizer::Parts::learn_offset(const ScanMatch& match) {
   if (!config.learn_surface_offset || !localized || match.fit < 0.6 || match.beams < 30.0) return;
-  offset = std::clamp(offset + 0.02 * match.residual, 0.0, map.resolution());
+  const double gain = std::max(0.02, 1.0 / (10.0 + offsets_learned++));
+  offset = std::clamp(offset + gain * match.residual, 0.0, map.resolution());
   if (std::abs(offset - field.surface_offset()) > 0.001) field.set_surface_offset(offset);
 }
 
 void Localizer::Parts::judge_state(const ScanReading& reading) {
-  judge.observe(count_beams(reading));
+  const BeamCounts counts = count_beams(reading);
+  judge.observe(counts);
+  const int all = counts.map + counts.person + counts.far;
+  if (all > 0) explained += 0.1 * (static_cast<double>(counts.map) / all - explained);
   const double metres = larger_axis(best.covariance), angle = heading_sigma(best.covariance);
   if (localized) {
     localized = !judge.lost() && best.mass > 0.7 && metres < 0.8;
@@ -242,12 +249,20 @@ void Localizer::Parts::judge_state(const ScanReading& reading) {
   }
 }
 
-void Localizer::Parts::glance(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom) {
-  std::erase_if(glances, [&](const Glance& g) { return g.laser == scan.laser; });
-  glances.push_back({scan.laser, beams_of(scan, base_from_laser), odom, scan.time});
+Localizer::Parts::Glance& Localizer::Parts::glance(const LaserScan& scan, const Pose& base_from_laser,
+                                                   const Pose& odom) {
+  auto it = std::find_if(glances.begin(), glances.end(), [&](const Glance& g) { return g.laser == scan.laser; });
+  if (it == glances.end()) it = glances.insert(glances.end(), Glance());
+  it->laser = scan.laser;
+  it->beams = beams_of(scan, base_from_laser);
+  it->odom_from_base = odom;
+  it->time = scan.time;
+  // Hardly anything of the map in sight is a dense crowd, or another place: a look over the whole map tells them apart.
+  const bool doubtful = !localized || explained < config.suspicious_below;
   const bool due = phase == Phase::blind || scan.time - searched_at >= config.search_again;
-  if (!localized && due && !search.running()) search_wanted = true;
+  if (doubtful && due && !search.running()) search_wanted = true;
   scans_since_wish = search_wanted ? scans_since_wish + 1 : 0;
+  return *it;
 }
 
 // All lasers' last scans as one look round from the given odometry; those too far back in way are left out.
@@ -279,7 +294,8 @@ void Localizer::Parts::adopt_search() {
     const Pose then = best.mean * relative(*odom_now, search_odom);
     const Peak current = judge_place(caster, field, search.look(), then);
     // Nothing better anywhere, or nowhere any better than chance: what is believed stays, off the map perhaps.
-    const bool better = current.score < best_score - 1.0 && peaks.front().share > config.worth_adopting;
+    const double margin = localized ? config.adopting_margin : 1.0;
+    const bool better = current.score < best_score - margin && peaks.front().share > config.worth_adopting;
     if (!better && best.mass > 0.5) return;
     best_score = std::max(best_score, current.score);
     seeds.push_back({best.mean, std::min(0.3, larger_axis(best.covariance) + 0.02),
@@ -294,6 +310,7 @@ void Localizer::Parts::adopt_search() {
   forget_motion(*odom_now);
   summarize();
   judge.reset(1.0);
+  explained = 1.0;
   localized = false;
   phase = Phase::tracking;
 }
@@ -325,8 +342,10 @@ void Localizer::start_at(const Pose& map_from_base, double sigma_position, doubl
   if (p.odom_now) p.forget_motion(*p.odom_now);
   p.phase = Parts::Phase::tracking;
   p.judge.reset(p.config.lost.found_below);
+  p.explained = 1.0;
   p.localized = sigma_position < 0.8;
   p.search_wanted = false;
+  p.glances.clear();
   p.summarize();
 }
 
@@ -368,18 +387,24 @@ ScanReading Localizer::update(const LaserScan& scan, const Pose& base_from_laser
   Parts& p = *parts_;
   const Pose odom = is_finite(odom_from_base) ? odom_from_base : p.odom_now.value_or(Pose{});
   if (!p.odom_then) move(odom, scan.time);
-  p.glance(scan, base_from_laser, odom);
-  if (p.phase == Parts::Phase::blind)
+  Parts::Glance& glance = p.glance(scan, base_from_laser, odom);
+  if (p.phase == Parts::Phase::blind) {
     return p.read_blindly(scan, p.pose * relative(p.pose_odom, odom) * base_from_laser);
-  const Pose moved = relative(*p.odom_then, odom);
-  const bool resting =
-      norm(moved.position()) < p.config.update_after_metres && std::abs(moved.theta) < p.config.update_after_turn;
+  }
+  const Pose moved = relative(glance.weighed_odom, odom);
+  const bool resting = glance.weighed && norm(moved.position()) < p.config.update_after_metres &&
+                       std::abs(moved.theta) < p.config.update_after_turn;
   // While the place is in doubt, patience at rest would only cost time.
   const Seconds patience = p.localized ? p.config.update_after_rest : 0.2 * p.config.update_after_rest;
-  bool due = !resting || scan.time - p.weighed_at >= patience;
+  bool due = !resting || scan.time - glance.weighed_at >= patience;
   // A scan that does not fit where the robot should be by now is not put off: the wheels may have slipped.
   if (!due) due = !p.refine(scan, base_from_laser, odom);
-  if (due) p.take_in(scan, base_from_laser, odom, resting ? p.config.rest_temper : 1.0);
+  if (due) {
+    p.take_in(scan, base_from_laser, odom, resting ? p.config.rest_temper : 1.0);
+    glance.weighed = true;
+    glance.weighed_odom = odom;
+    glance.weighed_at = scan.time;
+  }
   ScanReading reading = p.read(scan, p.pose * base_from_laser);
   reading.weighed = due;
   if (due) p.judge_state(reading);
