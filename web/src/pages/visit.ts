@@ -65,9 +65,9 @@ class DocentVisit extends LitElement {
   // The card covers part of the plan; what it is about stays in sight beside it.
   private roomFor: Card | null = null;
   private makeRoom(): void {
-    if (this.roomFor === this.card) return;
-    this.roomFor = this.card;
     const plan = this.plan(), at = this.placeOf(this.card);
+    if (this.roomFor === this.card || (this.card && (!at || !plan?.pageOf(at)))) return;
+    this.roomFor = this.card;
     const card = this.querySelector<HTMLElement>("docent-exhibit-card, docent-place-card");
     const wide = plan && card && plan.clientWidth > card.offsetWidth * 1.5;
     plan?.makeRoom(wide ? at : null, card?.classList.contains("at-left") ? "left" : "right", (card?.offsetWidth ?? 0) + 12);
@@ -119,10 +119,10 @@ class DocentVisit extends LitElement {
       ${failed && this.view === "plan" ? html`<div class="fail"><div>${icon("warning")}<h2>${w.planFailed}</h2><p>${w.planFailedDetail}</p>
         <div class="acts"><button class="btn main" @click=${() => loadMuseum()}>${w.loadAgain}</button><button class="btn" @click=${() => this.showList()}>${icon("list")}${w.openList}</button></div>
         <p class="xs muted">${w.code(failed.code)}</p></div></div>` : nothing}
-      <docent-plan class="win" ?hidden=${this.view !== "plan" || failed !== null} .follow=${this.follow} .active=${!lost}
+      <docent-plan class="win" ?hidden=${this.view !== "plan" || failed !== null} .follow=${this.follow} .span=${phone.matches ? 26 : 16} .active=${!lost}
         .marker=${this.card?.kind === "place" ? this.card.at : null}
         @exhibit-chosen=${(e: CustomEvent) => this.openExhibit(e.detail.id)} @floor-chosen=${(e: CustomEvent) => this.openPlace([e.detail.x, e.detail.y])}
-        @follow-changed=${(e: CustomEvent) => (this.follow = e.detail.on)}></docent-plan>
+        @follow-changed=${(e: CustomEvent) => (this.follow = e.detail.on)} @plan-ready=${() => this.requestUpdate()}></docent-plan>
       ${this.view === "plan" && !failed && s.map.state === "ready" ? html`
         <div class="tools"><button class="sq" aria-label=${w.closer} @click=${() => this.plan()?.zoom(1.5)}>${icon("plus")}</button>
           <button class="sq" aria-label=${w.farther} @click=${() => this.plan()?.zoom(1 / 1.5)}>${icon("minus")}</button>

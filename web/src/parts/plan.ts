@@ -1,6 +1,6 @@
 // <docent-plan>: the plan of the hall with the robot moving on it. Two canvases, the ground that stands still and the live layer,
 // and between them the exhibits' numbers as buttons. Pan, zoom, pinch, keyboard, follow.
-// Events: exhibit-chosen {id}, floor-chosen {x, y}, pose-placed {pose}, follow-changed.
+// Events: exhibit-chosen {id}, floor-chosen {x, y}, pose-placed {pose}, follow-changed {on}, plan-ready.
 import { LitElement, html } from "lit";
 import { say, store, t, Watch } from "../app";
 import { clock } from "../i18n";
@@ -209,6 +209,7 @@ export class DocentPlan extends LitElement {
       }
     }
     if (!this.view) {
+      queueMicrotask(() => this.emit("plan-ready", null));
       this.view = this.target = fit(this.padded(), width, height);
       if (this.follow) this.target = { ...this.view, scale: Math.max(this.view.scale, Math.min(width, height) / this.span) };
       if (this.follow) this.view = this.target;

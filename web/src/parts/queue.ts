@@ -14,6 +14,7 @@ export class DocentQueue extends LitElement {
   declare staff: boolean;
   declare trouble: string;
   private readonly ended = new Map<string, number>(); // own request to when it was seen to end
+  private begun = false; // what had ended before the page was opened is no news
 
   constructor() {
     super();
@@ -73,9 +74,10 @@ export class DocentQueue extends LitElement {
     const w = t(), now = Date.now() / 1000;
     for (const r of store.state.queue ?? []) {
       if (!isMine(r) || r.state === "pending" || r.state === "active" || this.ended.has(r.id)) continue;
-      this.ended.set(r.id, now);
+      this.ended.set(r.id, this.begun ? now : -Infinity);
       setTimeout(() => this.requestUpdate(), outcomeShown * 1000);
     }
+    this.begun ||= store.state.queue !== null;
     const last = (store.state.queue ?? []).filter((r) => isMine(r) && now - (this.ended.get(r.id) ?? -Infinity) < outcomeShown).at(-1);
     if (!last || last.state === "cancelled") return nothing;
     const place = last.exhibit ? placeName(last) : w.somewhere;

@@ -75,13 +75,13 @@ function overlap(a: Box, b: Box): number {
   return Math.max(0, Math.min(a.x1, b.x1) - Math.max(a.x0, b.x0)) * Math.max(0, Math.min(a.y1, b.y1) - Math.max(a.y0, b.y0));
 }
 
-// Long names go on two lines, broken at the space or hyphen nearest the middle.
+// Long names go on two lines, broken at the space nearest the middle, or at a hyphen when there is no space.
 export function breakName(name: string, measure: (text: string) => number, limit: number): string[] {
   if (measure(name) <= limit) return [name];
+  const gap = name.includes(" ") ? " " : "-";
   let best = -1;
   for (let k = 1; k < name.length - 1; k++) {
-    const c = name[k - 1];
-    if ((c === " " || c === "-") && Math.abs(k - name.length / 2) < Math.abs(best - name.length / 2)) best = k;
+    if (name[k - 1] === gap && Math.abs(k - name.length / 2) < Math.abs(best - name.length / 2)) best = k;
   }
   return best < 0 ? [name] : [name.slice(0, best).trimEnd(), name.slice(best)];
 }

@@ -90,6 +90,7 @@ describe("names on the plan", () => {
     const measure = (text: string) => text.length;
     expect(breakName("Spark transmitter", measure, 10)).toEqual(["Spark", "transmitter"]);
     expect(breakName("Balancier-Dampfmaschine", measure, 10)).toEqual(["Balancier-", "Dampfmaschine"]);
+    expect(breakName("Birch-bark canoe", measure, 10)).toEqual(["Birch-bark", "canoe"]);
     expect(breakName("Orrery", measure, 10)).toEqual(["Orrery"]);
     expect(breakName("Planetenmaschine", measure, 10)).toEqual(["Planetenmaschine"]);
   });
