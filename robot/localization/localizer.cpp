@@ -58,6 +58,12 @@ struct Localizer::Parts {
     bool weighed = false;
   };
 
+  // A place that a search found better than the one believed, and the odometry there.
+  struct Rival {
+    Pose map_from_base;
+    Pose odom_from_base;
+  };
+
   LocalizerConfig config;
   OccupancyGrid map;
   LikelihoodField field;
@@ -91,6 +97,7 @@ struct Localizer::Parts {
   bool search_wanted = false;
   Pose search_odom;
   Time searched_at;
+  std::optional<Rival> rival;
 
   void forget_motion(const Pose& odom) {
     odom_then = odom;
@@ -109,6 +116,7 @@ struct Localizer::Parts {
   void judge_state(const ScanReading& reading);
   Glance& glance(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom);
   Look look_from(const Pose& odom) const;
+  bool convincing(const Peak& found, const Peak& current);
   void adopt_search();
   ScanReading read_blindly(const LaserScan& scan, const Pose& map_from_laser) const;
 };
@@ -282,28 +290,38 @@ Look Localizer::Parts::look_from(const Pose& odom) const {
   return look;
 }
 
+// Whether what a search found is reason enough to give up where the robot is believed to be.
+bool Localizer::Parts::convincing(const Peak& found, const Peak& current) {
+  if (best.mass <= 0.5) return true;
+  const double margin = localized ? config.adopting_margin : 1.0;
+  const bool better = found.score > current.score + margin && found.share > config.worth_adopting;
+  if (!better || !localized) return better;
+  // Among people a scan may fit somewhere by chance, but not at the same place again from another point of view.
+  const Pose seen_from_rival = rival ? relative(rival->odom_from_base, search_odom) : Pose{};
+  const Pose expected = rival ? rival->map_from_base * seen_from_rival : Pose{};
+  const bool same = rival && distance(expected.position(), found.pose.position()) < 0.5 &&
+                    std::abs(wrap_angle(expected.theta - found.pose.theta)) < radians(10);
+  if (!same) rival = Rival{found.pose, search_odom};
+  return same && (norm(seen_from_rival.position()) > 0.3 || std::abs(seen_from_rival.theta) > 0.3);
+}
+
 // A search has ended: its places become hypotheses beside what is still believed (mixture MCL: Thrun et al. 2001).
 void Localizer::Parts::adopt_search() {
   const auto& peaks = search.peaks();
   if (peaks.empty() || !odom_now) return;
+  const Pose since_look = relative(search_odom, *odom_now);
   std::vector<Seed> seeds;
   double best_score = peaks.front().score;
   if (phase == Phase::tracking) {
-    advance(*odom_now);
-    summarize();
-    const Pose then = best.mean * relative(*odom_now, search_odom);
-    const Peak current = judge_place(caster, field, search.look(), then);
-    // Nothing better anywhere, or nowhere any better than chance: what is believed stays, off the map perhaps.
-    const double margin = localized ? config.adopting_margin : 1.0;
-    const bool better = current.score < best_score - margin && peaks.front().share > config.worth_adopting;
-    if (!better && best.mass > 0.5) return;
+    const Peak current = judge_place(caster, field, search.look(), pose * relative(pose_odom, search_odom));
+    if (!convincing(peaks.front(), current)) return;
     best_score = std::max(best_score, current.score);
-    seeds.push_back({best.mean, std::min(0.3, larger_axis(best.covariance) + 0.02),
+    seeds.push_back({current.pose * since_look, std::min(0.3, larger_axis(best.covariance) + 0.02),
                      heading_sigma(best.covariance) + 0.01, std::max(0.02, std::exp(current.score - best_score))});
   }
   for (const Peak& peak : peaks) {
     if (seeds.size() >= 40) break;
-    seeds.push_back({peak.pose * relative(search_odom, *odom_now), seed_sigma_position, seed_sigma_theta,
+    seeds.push_back({peak.pose * since_look, seed_sigma_position, seed_sigma_theta,
                      std::max(1e-3, std::exp(peak.score - best_score))});
   }
   filter.start(seeds);
@@ -311,6 +329,7 @@ void Localizer::Parts::adopt_search() {
   summarize();
   judge.reset(1.0);
   explained = 1.0;
+  rival.reset();
   localized = false;
   phase = Phase::tracking;
 }
@@ -345,6 +364,7 @@ void Localizer::start_at(const Pose& map_from_base, double sigma_position, doubl
   p.explained = 1.0;
   p.localized = sigma_position < 0.8;
   p.search_wanted = false;
+  p.rival.reset();
   p.glances.clear();
   p.summarize();
 }

@@ -42,7 +42,7 @@ struct LocalizerConfig {
   double doubt_share = 0.2;          // of the samples, drawn at a better place found there
   double surface_offset = 0.0;       // m, see LikelihoodField; where tracking starts from ...
   bool learn_surface_offset = true;  // ... when it may be learned while localized
-  Seconds search_again{5.0};         // while lost or not yet localized
+  Seconds search_again{3.0};         // while lost, not yet localized or suspicious
   double suspicious_below = 0.35;    // share of beams that meet the map, for a while: worth a search though localized
   double adopting_margin = 6.0;      // nats a place found must then be better than where the robot is believed to be
   double worth_adopting = 0.5;       // share of its beams that a place found must explain to replace a belief
