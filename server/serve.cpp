@@ -15,6 +15,7 @@
 #include "server/api/web.hpp"
 #include "server/cameras_room.hpp"
 #include "server/devices/simulated_hardware.hpp"
+#include "server/recording_desk.hpp"
 #include "server/runner.hpp"
 #include "server/tools/report.hpp"
 #include "server/wires.hpp"
@@ -69,6 +70,7 @@ class Server {
                                  [this](robot::Event event) { runner_->submit(std::move(event)); });
     robot::Config config{
         .body = body_, .localizer = {}, .start = start_pose(options.start, museum_), .seed = options.seed};
+    if (options.record) desk_ = std::make_unique<RecordingDesk>(*options.record, museum_.id, config);
     runner_ = std::make_unique<Runner>(robot_io_, robot::Robot(museum_, config), sinks(), zero_);
     wires_ = std::make_unique<Wires>(
         robot_io_, paths(), body_, [this] { return runner_->now(); },
@@ -127,6 +129,10 @@ class Server {
       for (const robot::Output& output : outputs) hear(output);
       net::post(web_io_, [this, outputs = std::move(outputs), now]() mutable { web_->take(std::move(outputs), now); });
     };
+    if (desk_) {
+      sinks.input = [this](const robot::Input& input) { desk_->input(input); };
+      sinks.output = [this](const robot::Output& output, robot::Time now) { desk_->output(output, now); };
+    }
     return sinks;
   }
 
@@ -189,6 +195,7 @@ class Server {
   net::steady_timer farewell_{web_io_};
   std::unique_ptr<devices::SimulatedHardware> hardware_;
   std::unique_ptr<Web> web_;
+  std::unique_ptr<RecordingDesk> desk_;
   std::unique_ptr<Wires> wires_;
   std::unique_ptr<Runner> runner_;
   std::unique_ptr<CamerasRoom> cameras_;
@@ -220,6 +227,7 @@ void add_serve_command(CLI::App& app) {
   command
       ->add_option("--start", options->start, "where the robot is: global (it looks for itself), home, or x,y,degrees")
       ->capture_default_str();
+  command->add_option("--record", options->record, "write everything the robot hears and says into this MCAP file");
   command->add_option("--base", options->base, "serial line of a Pioneer base; with the two lasers: a real robot");
   command->add_option("--laser-front", options->laser_front, "serial line of the front SICK LMS");
   command->add_option("--laser-rear", options->laser_rear, "serial line of the rear SICK LMS");

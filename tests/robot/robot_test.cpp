@@ -90,6 +90,10 @@ TEST_F(RobotTest, ALostLaserStopsTheWheels) {
   rehearsal_.run(Seconds(1));
   rehearsal_.tell(wish(ExhibitTarget{"a", {}}));
   ASSERT_TRUE(rehearsal_.run_until([&] { return rehearsal_.command.twist.linear > 0.3; }, Seconds(20)));
+  rehearsal_.lost = [](const Event& event) {
+    const auto* scan = std::get_if<LaserScan>(&event);
+    return scan && scan->laser == LaserId::front;
+  };
   rehearsal_.tell(DeviceState{Device::laser_front, false, "unplugged"});
   EXPECT_EQ(rehearsal_.command.reason, GateReason::sensor_stale);
   rehearsal_.run(Seconds(2));
@@ -108,18 +112,18 @@ TEST_F(RobotTest, RefusesGoalsItCannotReachAndSaysWhy) {
   EXPECT_EQ(refusal(PointTarget{{-3, 2}, {}}), Refusal::off_the_map);
   EXPECT_EQ(refusal(PointTarget{{0.1, 0.1}, {}}), Refusal::inside_obstacle);
   EXPECT_EQ(refusal(PointTarget{{std::numeric_limits<double>::quiet_NaN(), 1}, {}}), Refusal::not_finite);
-  EXPECT_EQ(refusal(PointTarget{{7.0, 1.0}, {}}), Refusal::none);
+  EXPECT_EQ(refusal(PointTarget{{8.5, 1.25}, {}}), Refusal::none);
 }
 
 TEST_F(RobotTest, SaysThatAHazardIsNoGoal) {
   museum_.hazards.push_back({.id = "plate",
                              .kind = HazardKind::low_obstacle,
-                             .polygon = {{6, 0.6}, {8, 0.6}, {8, 1.5}, {6, 1.5}},
+                             .polygon = {{6, 2.6}, {8, 2.6}, {8, 3.4}, {6, 3.4}},
                              .title = {}});
   Rehearsal rehearsal(museum_, {.localizer = {}, .start = museum_.home},
                       {.visitors = 0, .start = {}, .drive = {}, .sensors = {}}, 3);
   rehearsal.run(Seconds(1));
-  rehearsal.tell(wish(PointTarget{{7.0, 1.0}, {}}));
+  rehearsal.tell(wish(PointTarget{{7.0, 3.0}, {}}));
   EXPECT_EQ(rehearsal.answers.back().refusal, Refusal::in_hazard);
 }
 

@@ -18,12 +18,17 @@ class Rehearsal {
   // Every input that the robot got and every output that it gave, in order.
   std::function<void(const Input&, const std::vector<Output>&)> watch;
 
+  // Sensors that do not get through: return true for what the robot must not see.
+  std::function<bool(const Event&)> lost;
+
   std::vector<Output> tell(Event event) { return feed({world_.now(), std::move(event)}); }
 
   void run(Seconds duration) {
     const Time end = world_.now() + duration;
     while (world_.now() < end) {
-      for (const Input& input : world_.advance(world_.now() + Seconds(0.05))) feed({world_.now(), input.event});
+      for (const Input& input : world_.advance(world_.now() + Seconds(0.05))) {
+        if (!lost || !lost(input.event)) feed({world_.now(), input.event});
+      }
       feed({world_.now(), Tick{}});
     }
   }
