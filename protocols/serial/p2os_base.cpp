@@ -80,11 +80,21 @@ robot::Odometry OdometryTracker::update(const Sip& sip) {
   return out;
 }
 
+double OdometryTracker::step(const Sip& sip) const {
+  if (!started_) return 0.0;
+  return 0.001 * model_->mm_per_count *
+         std::hypot(wrapped_difference(sip.x, last_x_), wrapped_difference(sip.y, last_y_));
+}
+
 void OdometryTracker::reconnected(const Model& model) {
   model_ = &model;
   odom_from_counts_ = last_;
   started_ = false;
   x_counts_ = y_counts_ = 0;
+}
+
+double fastest_wheel(const Sip& sip, const Model& model) {
+  return 0.001 * model.mm_per_s_per_count * std::max(std::abs(int{sip.left}), std::abs(int{sip.right}));
 }
 
 robot::BaseState base_state(const Sip& sip) {

@@ -30,6 +30,8 @@ class OdometryTracker {
   explicit OdometryTracker(const Model& model) : model_(&model) {}
   // The base's pose and measured twist. Time is left at zero for the caller.
   robot::Odometry update(const Sip& sip);
+  // How far the base says to have moved since the last packet, m; 0 for the first.
+  double step(const Sip& sip) const;
   // A new connection to the same base: its counts may have started again, the pose goes on from where it was.
   void reconnected(const Model& model);
 
@@ -42,6 +44,7 @@ class OdometryTracker {
   robot::Pose last_;              // odom_from_base of the last packet
 };
 
+double fastest_wheel(const Sip& sip, const Model& model);  // m/s, of either
 robot::BaseState base_state(const Sip& sip);
 robot::SonarScan sonar_scan(const Sip& sip, const Model& model);
 

@@ -38,6 +38,24 @@ inline Duration silence_limit(std::chrono::duration<double> period) {
   return std::max<Duration>(250ms, std::chrono::duration_cast<Duration>(3.0 * period));
 }
 
+// Says when so much of what comes is damaged that the rest should not be trusted either: checksums let one damaged
+// frame in some ten thousands pass.
+class NoiseGauge {
+ public:
+  // Counters as they stand now; true at the end of a second in which a third of the frames was damaged.
+  bool too_noisy(std::uint64_t frames, std::uint64_t bad_checksums, Instant now) {
+    if (now - since_ < 1s) return false;
+    const std::uint64_t good = frames - std::exchange(frames_, frames);
+    const std::uint64_t bad = bad_checksums - std::exchange(bad_, bad_checksums);
+    const bool whole_second = now - std::exchange(since_, now) < 2s;
+    return whole_second && bad >= 5 && 2 * bad > good;
+  }
+
+ private:
+  Instant since_{};
+  std::uint64_t frames_ = 0, bad_ = 0;
+};
+
 // Rates to try in this order, each once; zeros left out.
 inline std::vector<int> rates_to_try(std::initializer_list<int> rates) {
   std::vector<int> out;

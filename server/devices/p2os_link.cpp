@@ -26,6 +26,7 @@ namespace {
 
 constexpr auto sync_patience = 250ms;
 constexpr auto frame_gap = 100ms;    // a pause this long inside a packet ends it
+constexpr double fastest = 3.0;      // m/s, of any such base
 constexpr auto pulse_every = 400ms;  // the base's watchdog waits for 2 s
 
 // HOSTBAUD's argument; nothing for rates that it does not know.
@@ -208,6 +209,8 @@ class P2osLink::Session : public std::enable_shared_from_this<Session> {
   awaitable<Trouble> listen() {
     const auto patience = silence_limit(sip_period_);
     auto last_sip = std::chrono::steady_clock::now();
+    implausible_ = 0;
+    noise_ = {};
     for (;;) {
       const auto waited = std::chrono::steady_clock::now() - last_sip;
       if (waited > patience) {
@@ -220,6 +223,10 @@ class P2osLink::Session : public std::enable_shared_from_this<Session> {
         last_sip = std::chrono::steady_clock::now();
       }
       if (stopping_) co_return Trouble();
+      const auto& counts = decoder_.counts();
+      if (noise_.too_noisy(counts.frames, counts.bad_checksums, std::chrono::steady_clock::now())) {
+        co_return "the line is too noisy: many damaged packets";
+      }
       keep_alive();
       if (!line_.error().empty()) co_return line_.error();
     }
@@ -227,7 +234,7 @@ class P2osLink::Session : public std::enable_shared_from_this<Session> {
 
   bool take_sip(ByteSpan body) {
     const auto sip = p2os::parse_sip(body);
-    if (!sip) return false;
+    if (!sip || !plausible(*sip)) return false;
     const robot::Time time = clock_() - robot::Seconds(transmission_time(body.size() + 5, line_.baud()));
     report_connected();
     robot::Odometry odometry = tracker_.update(*sip);
@@ -240,6 +247,18 @@ class P2osLink::Session : public std::enable_shared_from_this<Session> {
     emit(odometry);
     if (!sonars.readings.empty()) emit(std::move(sonars));
     return true;
+  }
+
+  // The checksum is a mere sum. What no base can do was damaged on the way, unless the base insists: then it has begun
+  // its odometry anew.
+  bool plausible(const p2os::Sip& sip) {
+    const Instant now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_plausible_).count();
+    if (implausible_ >= 3) tracker_.reconnected(*model_);
+    const bool good = p2os::fastest_wheel(sip, *model_) < fastest && tracker_.step(sip) < fastest * seconds + 0.1;
+    implausible_ = good ? 0 : implausible_ + 1;
+    if (good) last_plausible_ = now;
+    return good;
   }
 
   void emit(robot::Event event) {
@@ -322,7 +341,9 @@ class P2osLink::Session : public std::enable_shared_from_this<Session> {
   p2os::VelocityEncoder velocities_;
   Duration sip_period_ = 100ms;
   bool rolling_ = false;  // the last set-points were not zero
-  Instant last_command_, last_sent_, last_bytes_;
+  Instant last_command_, last_sent_, last_bytes_, last_plausible_;
+  int implausible_ = 0;  // packets in a row
+  NoiseGauge noise_;
   Backoff backoff_;
   std::optional<Trouble> last_trouble_;
   LineStatistics statistics_;

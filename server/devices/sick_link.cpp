@@ -195,6 +195,7 @@ class SickLink::Session : public std::enable_shared_from_this<Session> {
     const auto patience = silence_limit(scan_period(geometry_.variant, line_.baud()));
     last_good_ = last_change_ = std::chrono::steady_clock::now();
     worthless_status_ = 0;
+    noise_ = {};
     for (;;) {
       while (const auto item = decoder_.next()) {
         if (item->kind == sick::Item::telegram) take_scan(item->payload);
@@ -204,6 +205,9 @@ class SickLink::Session : public std::enable_shared_from_this<Session> {
         if (worthless_status_) co_return "the laser reports an error (status " + hex(worthless_status_) + ")";
         co_return fmt::format("no scan for {} ms",
                               std::chrono::duration_cast<std::chrono::milliseconds>(patience).count());
+      }
+      if (noise_.too_noisy(decoder_.counts().frames, decoder_.counts().bad_checksums, now)) {
+        co_return "the line is too noisy: many damaged telegrams";
       }
       if (same_scans_ >= freeze_scans && now - last_change_ > freeze_limit) co_return "the laser repeats the same scan";
       const auto read = co_await line_.read(std::max<Duration>(1ms, patience - (now - last_good_)));
@@ -298,6 +302,7 @@ class SickLink::Session : public std::enable_shared_from_this<Session> {
   sick::Geometry geometry_;
   int wanted_baud_ = 0;
   Backoff backoff_;
+  NoiseGauge noise_;
   std::optional<Trouble> last_trouble_;
   LineStatistics statistics_;
   Instant last_good_, last_change_;

@@ -193,6 +193,48 @@ TEST(P2osLink, GarbageOnTheLineNeverBecomesOdometry) {
   for (const Odometry& odometry : bench.all<Odometry>()) EXPECT_EQ(odometry.odom_from_base, robot::Pose{});
 }
 
+TEST(P2osLink, APacketThatNoBaseCouldMeanIsNotBelieved) {
+  BaseBench bench;
+  bench.link->start();
+  ASSERT_TRUE(bench.run_until([&] { return bench.listening(); }));
+  serial::p2os::Sip far_away;
+  far_away.x = 9000;
+  bench.line->inject(serial::p2os::encode_sip(far_away));
+  serial::p2os::Sip too_fast;
+  too_fast.left = too_fast.right = 20000;
+  bench.line->inject(serial::p2os::encode_sip(too_fast));
+  const auto before = bench.count<Odometry>();
+  ASSERT_TRUE(bench.run_until([&] { return bench.count<Odometry>() > before + 5; }));
+  for (const Odometry& odometry : bench.all<Odometry>()) {
+    EXPECT_EQ(odometry.odom_from_base, robot::Pose{});
+    EXPECT_EQ(odometry.twist, robot::Twist{});
+  }
+}
+
+TEST(P2osLink, ABaseThatBeganItsOdometryAnewIsFollowed) {
+  BaseBench bench;
+  bench.link->start();
+  ASSERT_TRUE(bench.run_until([&] { return bench.listening(); }));
+  bench.pose = {5.0, 5.0, 0.0};
+  const auto before = bench.count<Odometry>();
+  ASSERT_TRUE(bench.run_until([&] { return bench.count<Odometry>() > before + 5; }));
+  EXPECT_TRUE(bench.connected(Device::base));
+  EXPECT_EQ(bench.all<Odometry>().back().odom_from_base, robot::Pose{});
+}
+
+TEST(P2osLink, ALineFullOfDamageIsGivenUp) {
+  BaseBench bench;
+  bench.link->start();
+  ASSERT_TRUE(bench.run_until([&] { return bench.listening(); }));
+  serial::Bytes damaged = serial::p2os::encode_sip({});
+  damaged[8] ^= 0x10;
+  EXPECT_TRUE(bench.run_until([&] {
+    bench.line->inject(damaged);
+    return !bench.connected(Device::base);
+  }));
+  EXPECT_THAT(bench.state(Device::base), testing::HasSubstr("too noisy"));
+}
+
 TEST(P2osLink, StoppingHaltsAndClosesTheBase) {
   BaseBench bench;
   bench.link->start();

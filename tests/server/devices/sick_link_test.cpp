@@ -141,6 +141,19 @@ TEST(SickLink, GarbageBetweenScansCostsAtMostAFewOfThem) {
   EXPECT_GT(bench.link->statistics().skipped_bytes, 0u);
 }
 
+TEST(SickLink, ALineFullOfDamageIsGivenUp) {
+  SickBench bench;
+  bench.link->start();
+  ASSERT_TRUE(bench.run_until([&] { return bench.streaming(); }));
+  serial::Bytes damaged = serial::sick::encode_reply(serial::sick::response::scan, serial::Bytes{1, 2, 3, 4});
+  damaged[5] ^= 0x10;
+  EXPECT_TRUE(bench.run_until([&] {
+    for (int i = 0; i < 3; ++i) bench.line->inject(damaged);
+    return !bench.connected(Device::laser_front);
+  }));
+  EXPECT_THAT(bench.state(Device::laser_front), testing::HasSubstr("too noisy"));
+}
+
 TEST(SickLink, NothingThereIsSaidOnceInWords) {
   LineBench bench;
   SickLink link(bench.context.get_executor(), {.path = "/nowhere/laser"}, bench.clock(), bench.sink());
