@@ -230,7 +230,7 @@ struct Robot::Parts {
     localizer.work(search_units_per_tick);
     estimate = localizer.estimate();
     layers.decay(now);
-    planner.update(layers);
+    if (replan.due(now)) planner.update(layers);
     planner.work(plan_cells_per_tick);
     if (look_for_hazards.due(now)) {
       readings = virtual_sensors.read(localizer.samples(belief_samples));
@@ -401,6 +401,7 @@ struct Robot::Parts {
 
   std::array<Every, 2> understand{Every(Seconds(0.04)), Every(Seconds(0.04))};
   std::array<Every, 2> show_scan{Every(Seconds(0.1)), Every(Seconds(0.1))};
+  Every replan{Seconds(0.5)};
   Every look_for_hazards{Seconds(0.1)};
   Every plan_path{Seconds(0.15)};
   Every reconsider{Seconds(5.0)};
