@@ -141,7 +141,7 @@ void Crowd::notice_robot(std::size_t i, double dt, const RobotSeen& robot) {
   Mind& mind = minds_[i];
   const double d = length(person.position - robot.pose.position());
   if (d > notice_within || now_ < mind.interest_from || mind.distracted || person.doing == Doing::leaving) return;
-  const double a_second = person.temper == Temper::curious ? 0.12 : person.temper == Temper::regular ? 0.025 : 0.0;
+  const double a_second = person.temper == Temper::curious ? 0.2 : person.temper == Temper::regular ? 0.05 : 0.0;
   if (!random_.chance(a_second * dt)) return;
   if (!sees(person.position, robot.pose.position())) return;
   person.doing = moving(robot) ? Doing::following : Doing::crowding;
@@ -164,8 +164,10 @@ void Crowd::attend_robot(std::size_t i, double dt, const RobotSeen& robot) {
   if (person.doing == Doing::blocking) {
     return go(i, robot.pose * Point{robot.footprint.front + 0.75, 0.0}, 1.5, 0.3);
   }
-  const bool may_block = person.temper == Temper::curious && robot.twist.linear > 0.1 && std::abs(bearing) < 0.7;
-  if (may_block && gap < 3.0 && random_.chance((person.child ? 0.03 : 0.01) * dt)) {
+  // What happens when one steps before it? Children run round it for that, others need to be there already.
+  const bool may_block =
+      person.temper == Temper::curious && robot.twist.linear > 0.1 && (person.child || std::abs(bearing) < 0.8);
+  if (may_block && gap < 3.0 && random_.chance((person.child ? 0.04 : 0.06) * dt)) {
     person.doing = Doing::blocking;
     mind.until = std::min(mind.until, now_ + 4.0 + exponential(random_, 8.0));
     return;

@@ -55,7 +55,9 @@ void meet_circle(LaserScan& scan, Point center, double radius, auto&& direction)
 
 Sensors::Sensors(const Museum& museum, Body body, const SensorNoise& noise, Random random)
     : body_(std::move(body)), noise_(noise), laser_random_(random.split()), sonar_random_(random.split()) {
-  for (const auto& laser : body_.lasers) {
+  for (auto& laser : body_.lasers) {
+    laser.base_from_laser.theta += laser_random_.normal(noise_.laser_turn);
+    bias_.push_back(laser_random_.normal(noise_.laser_bias));
     auto& table = beams_.emplace_back();
     for (int i = 0; i < laser.beams; ++i) {
       const double angle = laser.angle_min + i * laser.angle_step;
@@ -95,6 +97,7 @@ LaserScan Sensors::scan(LaserId id, const Walls& walls, std::span<const Person> 
   }
   for (float& range : scan.ranges) {
     if (noise_.laser_dropout > 0.0 && laser_random_.chance(noise_.laser_dropout)) range = no_return;
+    range += static_cast<float>(bias_[index]);
     if (noise_.laser_sigma > 0.0) range += static_cast<float>(laser_random_.normal(noise_.laser_sigma));
     range = range < scan.max_range ? std::max(0.0f, range) : no_return;
   }

@@ -20,6 +20,8 @@ struct SensorNoise {
   double sonar_sigma = 0.015;    // share of the range
   double sonar_dropout = 0.03;   // share of echoes lost
   double sonar_specular = 0.6;   // rad from the normal beyond which a wall throws the echo away
+  double laser_bias = 0.008;     // m, of each laser, drawn once
+  double laser_turn = 0.003;     // rad, by which each laser sits askew, drawn once
 };
 
 class Sensors {
@@ -46,6 +48,7 @@ class Sensors {
   SensorNoise noise_;
   Random laser_random_, sonar_random_;
   std::vector<std::vector<Direction>> beams_;  // a laser, in its own frame
+  std::vector<double> bias_;                   // m, a laser
   std::vector<Edge> glass_;
   int group_ = 0;
 };

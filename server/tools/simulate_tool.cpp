@@ -3,9 +3,12 @@
 #include <time.h>
 
 #include <chrono>
+#include <fstream>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
+#include "protocols/files/recording.hpp"
 #include "protocols/files/site_file.hpp"
 #include "robot/robot.hpp"
 #include "robot/simulation/painter.hpp"
@@ -58,6 +61,10 @@ class Deployment {
         robot_(museum, config_for(museum, options)),
         public_(world_.museum(), {.requests_per_hour = options.requests_per_hour}, options.seed * 3 + 2) {
     if (options.cameras) painter_.emplace(world_.museum());
+    if (options.record.empty()) return;
+    file_.open(options.record, std::ios::binary);
+    if (!file_) throw std::runtime_error(options.record.string() + ": cannot be written");
+    recorder_.emplace(file_, files::RecordingInfo{museum.id, "docent simulate", config_for(museum, options)});
   }
 
   void run(robot::Time until) {
@@ -109,8 +116,10 @@ class Deployment {
   }
 
   void feed(const robot::Input& input) {
+    if (recorder_) recorder_->input(input);
     const auto outputs = robot_time_.time([&] { return robot_.handle(input); });
     for (const auto& output : outputs) {
+      if (recorder_) recorder_->output(input.now, output);
       if (const auto* command = std::get_if<robot::WheelCommand>(&output)) world_.command(*command);
       if (const auto* motors = std::get_if<robot::EnableMotors>(&output)) world_.enable_motors(motors->on);
       if (const auto* speech = std::get_if<robot::Speech>(&output)) world_.hear(*speech);
@@ -125,6 +134,8 @@ class Deployment {
   SimulationStatistics statistics_;
   std::optional<robot::simulation::Painter> painter_;
   std::size_t pictures_ = 0, jpeg_bytes_ = 0;
+  std::ofstream file_;
+  std::optional<files::Recorder> recorder_;
   Stopwatch world_time_, robot_time_, camera_time_;
 };
 
@@ -151,6 +162,7 @@ void add_simulate_command(CLI::App& app) {
   command->add_option("--report", options->report, "file for the JSON report; - is standard output");
   command->add_option("--requests-per-hour", options->requests_per_hour, "wishes of web and kiosk visitors")
       ->check(CLI::Range(0.0, 3600.0));
+  command->add_option("--record", options->record, "file for a recording (MCAP) of all that the robot hears and says");
   command->add_flag("--cameras", options->cameras, "paint and encode the pictures of two cameras five times a second");
   command->add_flag("--find-itself", options->find_itself, "the robot is not told where it starts");
   command->callback([options] {

@@ -21,6 +21,7 @@ struct SimulateOptions {
   std::string report = "-";
   bool cameras = false;             // render and encode both cameras five times a second
   double requests_per_hour = 50.0;  // RHINO served about as many
+  std::filesystem::path record;     // file for a recording of all inputs and outputs; empty: none
   bool find_itself = false;         // start without a known pose
 };
 

@@ -9,7 +9,7 @@
 namespace robot::simulation {
 namespace {
 
-constexpr SensorNoise no_noise{0.0, 0.0, 0.0, 0.0, pi};
+constexpr SensorNoise no_noise{0.0, 0.0, 0.0, 0.0, pi, 0.0, 0.0};
 
 Museum room_with_pillars() {
   Museum museum = testing::hall(12.0, 9.0);
@@ -83,7 +83,9 @@ TEST(Sensors, BeamsBeyondTheRangeComeBackAsNothing) {
 TEST(Sensors, NoiseHasTheStatedSpread) {
   const Museum museum = testing::hall(8.0, 8.0);
   const Walls walls(museum.map);
-  Sensors sensors(museum, standard_body(), {}, Random(3));
+  SensorNoise noise;
+  noise.laser_bias = noise.laser_turn = 0.0;
+  Sensors sensors(museum, standard_body(), noise, Random(3));
   double sum = 0.0, squares = 0.0;
   int count = 0, lost = 0;
   for (int i = 0; i < 4000; ++i) {

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+
+#include "protocols/files/recording.hpp"
 #include "protocols/files/site_file.hpp"
 
 namespace tools {
@@ -47,6 +50,27 @@ TEST(SimulateTool, ReportsADeployment) {
 
 TEST(SimulateTool, SameSeedSameDay) {
   EXPECT_EQ(without_clock(few_minutes(1.0, 5)), without_clock(few_minutes(1.0, 5)));
+}
+
+TEST(SimulateTool, RecordsWhatTheRobotHeardAndSaid) {
+  const auto file = std::filesystem::temp_directory_path() / "docent_simulate_test.mcap";
+  SimulateOptions options;
+  options.hours = 10.0 / 3600.0;
+  options.visitors = 5;
+  options.record = file;
+  simulate(files::load_site("static/sites/rhine-hall"), options);
+  const files::Recording recording = files::read_recording(file);
+  std::filesystem::remove(file);
+  EXPECT_EQ(recording.info.site, "rhine-hall");
+  int ticks = 0, commands = 0;
+  for (const auto& entry : recording.entries) {
+    const auto* input = std::get_if<robot::Input>(&entry);
+    ticks += input && std::holds_alternative<robot::Tick>(input->event);
+    const auto* said = std::get_if<files::RecordedOutput>(&entry);
+    commands += said && std::holds_alternative<robot::WheelCommand>(said->output);
+  }
+  EXPECT_EQ(ticks, 200);
+  EXPECT_GE(commands, 200);
 }
 
 }  // namespace
