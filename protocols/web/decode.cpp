@@ -115,17 +115,14 @@ Decoded<std::string> decode_name(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   int characters = 0;
-  for (std::string_view rest = text; !rest.empty(); ++characters) {
+  for (std::string_view rest = text; !rest.empty() && characters <= longest; ++characters) {
     const auto point = next_code_point(rest);
     if (!point) return Problem{422, "bad_name", "The name is not valid UTF-8.", "name"};
     if (!is_printable(*point)) {
       return Problem{422, "bad_name", "The name holds a control or invisible character.", "name"};
     }
-    if (characters >= longest) break;
   }
-  if (characters < 1 || characters >= longest + 1 || text.size() > 4 * longest) {
-    return Problem{422, "bad_name", "A name has 1 to 40 characters.", "name"};
-  }
+  if (characters < 1 || characters > longest) return Problem{422, "bad_name", "A name has 1 to 40 characters.", "name"};
   return std::string(text);
 }
 

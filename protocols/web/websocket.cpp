@@ -101,9 +101,9 @@ std::optional<std::uint16_t> FrameReader::feed(std::span<const char> bytes, std:
       const std::size_t take = std::min(header_size() - header_.size(), bytes.size());
       header_.append(bytes.data(), take);
       bytes = bytes.subspan(take);
+      if (header_.size() == 2 && !(header_[1] & 0x80)) return failed_ = close_code::protocol_error;  // not masked
       if (header_.size() < header_size()) {
         if (bytes.empty()) return std::nullopt;
-        if (header_.size() == 2 && !(header_[1] & 0x80)) return failed_ = close_code::protocol_error;  // not masked
         continue;
       }
       if ((failed_ = begin_frame())) return failed_;
