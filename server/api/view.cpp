@@ -1,7 +1,5 @@
 #include "server/api/view.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -70,14 +68,32 @@ void View::take(const std::vector<robot::Output>& outputs, robot::Time now) {
   for (const robot::Output& output : outputs) {
     std::visit([this](const auto& said) { tell(said); }, output);
   }
-  if (queue_dirty_ && (queue_urgent_ || Clock::now() - queue_told_ > std::chrono::milliseconds(500))) publish_queue();
+  publish();
+}
+
+// Tells what changed, each topic at its own pace; what is held back goes out with a later batch.
+void View::publish() {
+  if (pose_dirty_ && due(pose_told_, std::chrono::milliseconds(30))) {
+    pose_dirty_ = false;
+    hub_.state(index(Topic::pose), protocols::web::pose_message(*pose_));
+  }
+  if (people_dirty_ && due(people_told_, std::chrono::milliseconds(90))) {
+    people_dirty_ = false;
+    hub_.state(index(Topic::people), protocols::web::people_message(people_));
+  }
+  if (status_dirty_ && due(status_told_, std::chrono::milliseconds(status_urgent_ ? 0 : 250))) {
+    status_dirty_ = status_urgent_ = false;
+    Json message = {{"type", "status"}};
+    message.update(status_json());
+    hub_.state(index(Topic::status), message);
+  }
+  if (queue_dirty_ && due(queue_told_, std::chrono::milliseconds(queue_urgent_ ? 0 : 500))) publish_queue();
 }
 
 void View::tell(const robot::PoseEstimate& pose) {
   count_travel(pose);
   pose_ = pose;
-  if (due(pose_told_, std::chrono::milliseconds(30)))
-    hub_.state(index(Topic::pose), protocols::web::pose_message(pose));
+  pose_dirty_ = true;
 }
 
 void View::tell(const robot::Belief& belief) {
@@ -90,21 +106,16 @@ void View::tell(const robot::ScanView& scan) {
 }
 
 void View::tell(const robot::People& people) {
-  if (due(people_told_, std::chrono::milliseconds(90))) {
-    hub_.state(index(Topic::people), protocols::web::people_message(people));
-  }
+  people_ = people;
+  people_dirty_ = true;
 }
 
 void View::tell(const robot::Path& path) { hub_.state(index(Topic::path), protocols::web::path_message(path)); }
 
 void View::tell(const robot::Status& status) {
-  const bool changed = differs(status, status_);
+  status_urgent_ = status_urgent_ || differs(status, status_);
+  status_dirty_ = true;
   status_ = status;
-  if (!changed && Clock::now() - status_told_ < std::chrono::milliseconds(250)) return;
-  status_told_ = Clock::now();
-  Json message = {{"type", "status"}};
-  message.update(status_json());
-  hub_.state(index(Topic::status), message);
 }
 
 void View::tell(const robot::VelocitySpace& space) {
@@ -160,8 +171,6 @@ void View::tell(const robot::VisitEnded& visit) {
 void View::tell(const robot::Note& note) {
   const WallSeconds wall = wall_now();
   journal_.write([note, wall](Store& store) { store.add_note(note, wall); });
-  const auto level = note.severity == robot::Severity::info ? spdlog::level::info : spdlog::level::warn;
-  spdlog::log(level, "robot: {}: {}", note.code, note.text);
   Json message = protocols::web::note_message(note, now_);
   notes_.push_back(message);
   notes_.back().erase("type");
@@ -223,7 +232,6 @@ std::vector<const robot::Request*> View::listed() const {
 
 void View::publish_queue() {
   queue_dirty_ = queue_urgent_ = false;
-  queue_told_ = Clock::now();
   std::set<std::string> sessions{""};
   for (const auto* request : listed()) sessions.insert(request->requester.session);
   std::map<std::string, Json> messages;

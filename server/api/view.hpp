@@ -61,6 +61,7 @@ class View {
   void tell(const Other&) {}  // wheels and answers are not for viewers
 
   std::vector<const robot::Request*> listed() const;
+  void publish();
   void publish_queue();
   void keep(const robot::Request& request);
   void count_travel(const robot::PoseEstimate& pose);
@@ -79,9 +80,10 @@ class View {
   double unsaved_distance_ = 0.0;  // m
   double unsaved_seconds_ = 0.0;
 
-  bool queue_dirty_ = false;
-  bool queue_urgent_ = false;  // a state changed, not only an estimate
-  Clock::time_point status_told_, queue_told_, pose_told_, people_told_;
+  robot::People people_;
+  bool pose_dirty_ = false, people_dirty_ = false, status_dirty_ = false, queue_dirty_ = false;
+  bool status_urgent_ = false, queue_urgent_ = false;  // more than a number changed
+  Clock::time_point pose_told_, people_told_, status_told_, queue_told_;
 };
 
 }  // namespace server

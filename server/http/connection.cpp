@@ -35,7 +35,6 @@ Problem problem_of(error_code error) {
   if (error == http::error::header_limit) return {431, "headers_too_large", "The request's headers are too large.", ""};
   if (error == http::error::body_limit) return {413, "body_too_large", "The body is too large.", ""};
   if (error == http::error::bad_version) return {505, "bad_version", "Speak HTTP/1.1.", ""};
-  if (error == boost::beast::error::timeout) return {408, "timeout", "The request came too slowly.", ""};
   const bool malformed = error.category() == make_error_code(http::error::bad_method).category() &&
                          error != http::error::end_of_stream && error != http::error::partial_message;
   if (malformed)
@@ -136,7 +135,7 @@ net::awaitable<void> HttpConnection::run() {
       const Reply reply = problem_reply(problem);
       co_await write(reply, false, false);
       co_await linger();
-      break;
+      break;  // a request that came too slowly finds the line closed
     }
     auto request = parser.release();
     const bool head_only = request.method() == http::verb::head;

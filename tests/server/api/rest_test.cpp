@@ -304,8 +304,7 @@ TEST(Rest, ShowsPictures) {
 
   testing_support::RawLine line(house.port);
   line.send("GET /api/v1/cameras/hall/stream.mjpg HTTP/1.1\r\nHost: x\r\n\r\n");
-  EXPECT_THAT(line.read(std::chrono::seconds(5), "not really a jpeg"),
-              testing::HasSubstr("--docent-frame"));
+  EXPECT_THAT(line.read(std::chrono::seconds(5), "not really a jpeg"), testing::HasSubstr("--docent-frame"));
   house.on_web([&] { house.web().frame("hall", std::make_shared<const std::string>("second"), robot::Time{}); });
   EXPECT_THAT(line.read(std::chrono::seconds(5), "second"), testing::HasSubstr("Content-Length: 6\r\n\r\nsecond"));
 }
