@@ -14,6 +14,9 @@ namespace {
 
 constexpr double seed_sigma_position = 0.08, seed_sigma_theta = 0.03;  // of a place that a search found, m and rad
 
+// What no scan tells: how far a map is off from the building. From recorded logs against their references.
+constexpr double map_sigma_position = 0.02, map_sigma_theta = 0.008;  // m, rad
+
 double larger_axis(const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix2d block = covariance.topLeftCorner<2, 2>();
   const auto values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(block, Eigen::EigenvaluesOnly).eigenvalues();
@@ -62,6 +65,7 @@ struct Localizer::Parts {
   struct Rival {
     Pose map_from_base;
     Pose odom_from_base;
+    int times = 1;  // found at this place
   };
 
   LocalizerConfig config;
@@ -83,6 +87,7 @@ struct Localizer::Parts {
   Eigen::Matrix3d predicted_covariance = Eigen::Matrix3d::Zero();  // of its belief before the last scan was weighed
   int modes = 0;
   bool localized = false;
+  bool settled = false;  // was localized since the belief was last set up: where the wheels lead deserves trust
 
   Pose pose;       // refined estimate ...
   Pose pose_odom;  // ... and the odometry it belongs to
@@ -199,13 +204,15 @@ bool Localizer::Parts::refine(const LaserScan& scan, const Pose& base_from_laser
   const Eigen::Matrix3d prior = with_floor(predicted_covariance, 0.01, 0.005);
   pose = predicted;
   pose_odom = odom;
-  covariance = with_floor(best.covariance, 0.01, 0.005);
+  covariance = with_floor(best.covariance, map_sigma_position, map_sigma_theta);
   if (larger_axis(best.covariance) > 0.5) return true;
   const int stride = std::max(1, (static_cast<int>(scan.ranges.size()) + 180) / 181);
   Beams beams = beams_of(scan, base_from_laser, 0, stride);
-  const ScanReading reading = read(scan, predicted * base_from_laser);
+  // Only ends near a surface can say where it is; no ray needs to be cast for that.
+  const double slack = config.reading.tolerance + 2.0 * larger_axis(covariance);
   std::erase_if(beams.beams, [&](const Beam& beam) {
-    return reading.kinds[static_cast<std::size_t>(beam.index)] != BeamKind::map || !field.tells(predicted * beam.end);
+    const Point end = predicted * beam.end;
+    return !field.tells(end) || interpolate(field.distances(), end).value > slack;
   });
   if (beams.beams.size() < 10) return true;
   const ScanMatch match =
@@ -214,7 +221,7 @@ bool Localizer::Parts::refine(const LaserScan& scan, const Pose& base_from_laser
                             wrap_angle(match.pose.theta - predicted.theta));
   if (match.fit < 0.3 || off.dot(prior.inverse() * off) > 16.0) return false;
   pose = match.pose;
-  covariance = with_floor(match.covariance, 0.01, 0.003);
+  covariance = with_floor(match.covariance, map_sigma_position, map_sigma_theta);
   learn_offset(match);
   return true;
 }
@@ -255,6 +262,7 @@ void Localizer::Parts::judge_state(const ScanReading& reading) {
   } else {
     localized = judge.confirmed() && best.mass > 0.95 && metres < 0.4 && angle < radians(15);
   }
+  settled |= localized;
 }
 
 Localizer::Parts::Glance& Localizer::Parts::glance(const LaserScan& scan, const Pose& base_from_laser,
@@ -293,16 +301,19 @@ Look Localizer::Parts::look_from(const Pose& odom) const {
 // Whether what a search found is reason enough to give up where the robot is believed to be.
 bool Localizer::Parts::convincing(const Peak& found, const Peak& current) {
   if (best.mass <= 0.5) return true;
-  const double margin = localized ? config.adopting_margin : 1.0;
+  const double margin = settled ? config.adopting_margin : 1.0;
   const bool better = found.score > current.score + margin && found.share > config.worth_adopting;
-  if (!better || !localized) return better;
-  // Among people a scan may fit somewhere by chance, but not at the same place again from another point of view.
+  if (!better || !settled) return better;
+  // Among people, or in a room that the map does not know, a scan may fit somewhere by chance, but not at the same
+  // place again from another point of view. A lost robot that stands still gets no other one: there it must fit for
+  // longer.
   const Pose seen_from_rival = rival ? relative(rival->odom_from_base, search_odom) : Pose{};
   const Pose expected = rival ? rival->map_from_base * seen_from_rival : Pose{};
   const bool same = rival && distance(expected.position(), found.pose.position()) < 0.5 &&
                     std::abs(wrap_angle(expected.theta - found.pose.theta)) < radians(10);
   if (!same) rival = Rival{found.pose, search_odom};
-  return same && (norm(seen_from_rival.position()) > 0.3 || std::abs(seen_from_rival.theta) > 0.3);
+  const bool elsewhere = norm(seen_from_rival.position()) > 0.3 || std::abs(seen_from_rival.theta) > 0.3;
+  return same && (elsewhere || (!localized && ++rival->times >= config.looks_at_rest));
 }
 
 // A search has ended: its places become hypotheses beside what is still believed (mixture MCL: Thrun et al. 2001).
@@ -330,7 +341,7 @@ void Localizer::Parts::adopt_search() {
   judge.reset(1.0);
   explained = 1.0;
   rival.reset();
-  localized = false;
+  localized = settled = false;
   phase = Phase::tracking;
 }
 
@@ -362,7 +373,7 @@ void Localizer::start_at(const Pose& map_from_base, double sigma_position, doubl
   p.phase = Parts::Phase::tracking;
   p.judge.reset(p.config.lost.found_below);
   p.explained = 1.0;
-  p.localized = sigma_position < 0.8;
+  p.localized = p.settled = sigma_position < 0.8;
   p.search_wanted = false;
   p.rival.reset();
   p.glances.clear();
@@ -383,7 +394,7 @@ void Localizer::start_globally() {
   p.filter.start_from(everywhere);
   if (p.odom_now) p.forget_motion(*p.odom_now);
   p.phase = Parts::Phase::blind;
-  p.localized = false;
+  p.localized = p.settled = false;
   p.glances.clear();
   p.summarize();
 }

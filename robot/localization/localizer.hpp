@@ -45,6 +45,7 @@ struct LocalizerConfig {
   Seconds search_again{3.0};         // while lost, not yet localized or suspicious
   double suspicious_below = 0.35;    // share of beams that meet the map, for a while: worth a search though localized
   double adopting_margin = 6.0;      // nats a place found must then be better than where the robot is believed to be
+  int looks_at_rest = 3;             // that a lost robot which stands still must find the same place in
   double worth_adopting = 0.5;       // share of its beams that a place found must explain to replace a belief
 };
 
