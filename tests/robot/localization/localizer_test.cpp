@@ -196,6 +196,22 @@ TEST(Localizer, FindsBackWhenItWasCarriedAway) {
   }
 }
 
+// A robot that knows that it is lost does not drive: it must find back without another point of view.
+TEST(Localizer, FindsBackWhenItWasCarriedAwayAndStandsStill) {
+  Drive drive(hall());
+  drive.localizer.move(drive.odom, drive.time);
+  drive.localizer.start_at(drive.truth, 0.1, 0.05);
+  drive.circle(30);
+  drive.truth = {8.5, 6.5, 2.0};
+  int steps = 0;
+  while (steps < 600 && !(drive.localizer.estimate().localized && drive.error() < 0.1)) {
+    drive.step({});
+    ++steps;
+  }
+  EXPECT_LT(drive.error(), 0.1);
+  EXPECT_LT(steps, 600) << "a minute";
+}
+
 TEST(Localizer, ADenseCrowdIsNotTakenForAnotherPlace) {
   Drive drive(hall());
   drive.localizer.move(drive.odom, drive.time);
