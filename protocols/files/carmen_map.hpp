@@ -28,7 +28,8 @@ struct CarmenMap {
 CarmenMap read_carmen_map(const std::filesystem::path& path);
 CarmenMap parse_carmen_map(std::string_view bytes, const std::string& name);
 
-// wean.dat: 800 rows of 800 values, x-major, probability of *free*, -1 unknown; 10 cm. Throws FileError.
+// wean.dat: 800 rows of 800 values, x-major, probability of *free*, -1 unknown; 10 cm. What lies between wall and floor
+// is unknown too. Throws FileError.
 robot::OccupancyGrid read_wean_map(const std::filesystem::path& path);
 robot::OccupancyGrid parse_wean_map(std::string_view text, const std::string& name);
 

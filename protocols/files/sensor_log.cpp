@@ -37,8 +37,10 @@ class LogReader {
       reason = robot_laser(fields);
     } else if (keyword == "O") {
       reason = wean_odometry(fields);
+      if (!reason) wean_odometry_.push_back(log_.entries.size() - 1);
     } else if (keyword == "L") {
       reason = wean_laser(fields);
+      wean_scans_ |= !reason;
     } else if (!keyword.empty()) {
       ++log_.other_lines;
       log_.corrected |= keyword == "NEFF";  // GMapping's number of effective particles
@@ -53,6 +55,7 @@ class LogReader {
                        offsets_.end());
       log_.clock_offset = offsets_[offsets_.size() / 2];
     }
+    if (wean_scans_) drop_wean_odometry();
     mark_no_returns();
   }
 
@@ -180,6 +183,21 @@ class LogReader {
     return nullptr;
   }
 
+  // An L line carries the odometry of its scan's own time, which lies a tenth of a second before that of the O line
+  // above it: mixed, the robot would seem to jump back at each scan.
+  void drop_wean_odometry() {
+    std::vector<LogEntry> kept;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < log_.entries.size(); ++i) {
+      if (next < wean_odometry_.size() && wean_odometry_[next] == i) {
+        ++next;
+      } else {
+        kept.push_back(std::move(log_.entries[i]));
+      }
+    }
+    log_.entries = std::move(kept);
+  }
+
   // Lasers report "nothing seen" as their greatest values (81.83, 81.87, 81.91, 51.1, 50.0 ...), which one the format
   // does not say: whatever lies within 10 cm of the log's greatest value, or of the line's own limit.
   void mark_no_returns() {
@@ -203,7 +221,9 @@ class LogReader {
 
   SensorLog& log_;
   std::vector<double> offsets_;
-  int record_ = -1;  // of the last ODOM line
+  int record_ = -1;                         // of the last ODOM line
+  std::vector<std::size_t> wean_odometry_;  // entries that are O lines
+  bool wean_scans_ = false;
 };
 
 }  // namespace

@@ -27,7 +27,8 @@ struct BadLine {
 
 struct SensorLog {
   std::string name;
-  std::vector<LogEntry> entries;  // in the file's order; stamps may run backwards. Each scan follows its odometry.
+  // In the file's order; stamps may run backwards. Each scan follows its odometry. Of a Wean log only that.
+  std::vector<LogEntry> entries;
   std::size_t scans = 0;
   double clock_offset = 0.0;       // s: the host's clock minus the logger's, median over the log
   bool corrected = false;          // written by a mapper: its poses are no odometry

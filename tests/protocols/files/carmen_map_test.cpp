@@ -76,6 +76,7 @@ TEST(CarmenMap, WeanRowsAreColumnsAndHighMeansFree) {
   EXPECT_EQ((grid[{0, 1}]), 10);
   EXPECT_EQ((grid[{0, 2}]), 90);
   EXPECT_EQ((grid[{1, 1}]), 100);
+  EXPECT_EQ((grid[{1, 2}]), robot::unknown_cell) << "neither wall nor floor";
   EXPECT_DOUBLE_EQ(grid.resolution(), 0.1);
 }
 
@@ -88,12 +89,13 @@ TEST(CarmenMap, ReadsTheRecordedMaps) {
   EXPECT_FALSE(read_map(recorded_data("maps/longwood.walls.map")).empty());
   const auto hall = read_map(wean);
   EXPECT_EQ(hall.width(), 800);
-  std::size_t known = 0, free = 0;
+  std::size_t walls = 0, floor = 0;
   for (const auto value : hall.cells()) {
-    known += value >= 0;
-    free += value >= 0 && value < 50;
+    walls += robot::is_occupied(value);
+    floor += robot::is_free(value);
   }
-  EXPECT_NEAR(static_cast<double>(free) / static_cast<double>(known), 0.85, 0.05);
+  EXPECT_NEAR(static_cast<double>(floor), 45'000, 5'000) << "some 450 square metres of corridor and hall";
+  EXPECT_NEAR(static_cast<double>(walls), 20'000, 3'000);
 }
 
 TEST(CarmenMap, UnknownFilesAreRefused) {
