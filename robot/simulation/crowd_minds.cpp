@@ -8,10 +8,10 @@
 namespace robot::simulation {
 namespace {
 
-constexpr double notice_within = 7.0;  // m from which the robot catches the eye
+constexpr double notice_within = 9.0;  // m from which the robot catches the eye
 constexpr double ear_shot = 4.0;       // m
 constexpr double in_the_way = 0.9;     // m before the footprint
-constexpr double lose_interest = 9.0;  // m
+constexpr double lose_interest = 11.0;  // m
 
 double exponential(Random& random, double mean) { return -mean * std::log(1.0 - random.uniform()); }
 
@@ -141,12 +141,12 @@ void Crowd::notice_robot(std::size_t i, double dt, const RobotSeen& robot) {
   Mind& mind = minds_[i];
   const double d = length(person.position - robot.pose.position());
   if (d > notice_within || now_ < mind.interest_from || mind.distracted || person.doing == Doing::leaving) return;
-  const double a_second = person.temper == Temper::curious ? 0.2 : person.temper == Temper::regular ? 0.05 : 0.0;
+  const double a_second = person.temper == Temper::curious ? 0.3 : person.temper == Temper::regular ? 0.08 : 0.0;
   if (!random_.chance(a_second * dt)) return;
   if (!sees(person.position, robot.pose.position())) return;
   person.doing = moving(robot) ? Doing::following : Doing::crowding;
   mind.bearing = bearing_from(robot, person.position);
-  mind.until = now_ + 15.0 + exponential(random_, person.temper == Temper::curious ? 70.0 : 25.0);
+  mind.until = now_ + 15.0 + exponential(random_, person.temper == Temper::curious ? 90.0 : 40.0);
 }
 
 void Crowd::attend_robot(std::size_t i, double dt, const RobotSeen& robot) {
@@ -156,7 +156,7 @@ void Crowd::attend_robot(std::size_t i, double dt, const RobotSeen& robot) {
   const double d = length(to);
   mind.gaze = std::atan2(to.y, to.x);
   if (now_ > mind.until || d > lose_interest) {
-    mind.interest_from = now_ + 40.0 + exponential(random_, 90.0);
+    mind.interest_from = now_ + 30.0 + exponential(random_, 60.0);
     return choose_exhibit(i);
   }
   const double bearing = bearing_from(robot, person.position);

@@ -142,6 +142,34 @@ TEST(World, RobotThatRunsSomeoneDownIsBlamed) {
   EXPECT_EQ(world.contacts()[0].kind, ContactKind::person_robot_fault);
 }
 
+// Runs in from the left, 25 cm before the bumper: the brakes are on at once, and yet they meet.
+TEST(World, WhoeverCutsInTooCloseToStopIsToBlame) {
+  WorldConfig config = empty_house();
+  config.visitors = 1;
+  World world(testing::hall(16.0, 8.0), standard_body(), config, 1);
+  world.enable_motors(true);
+  world.place({3.0, 4.0, 0.0});
+  bool brakes = false;
+  double lane = 0.0;  // x at which the person runs across
+  for (int i = 1; i <= 320; ++i) {
+    Person& person = world.visitors()[0];
+    if (i <= 200) {
+      person.position = {6.0, 7.0};
+    } else if (i == 201) {
+      lane = world.truth().x + 0.3 + 0.25 + person.radius;
+      person.position = {lane, 4.6};
+    } else {
+      person.position.x = lane;
+    }
+    person.velocity = {0.0, i <= 200 || person.position.y < 4.05 ? 0.0 : -2.4};
+    brakes = brakes || (i > 200 && person.position.y < 4.5);
+    world.drive_to({brakes ? 0.0 : 0.7, 0.0});
+    world.advance(Time(i * 25ms));
+  }
+  ASSERT_EQ(world.contacts().size(), 1u);
+  EXPECT_EQ(world.contacts()[0].kind, ContactKind::person_own_fault);
+}
+
 TEST(World, BatteryEmptiesOnTheWayAndFillsAtHome) {
   WorldConfig config = empty_house();
   config.battery_fraction = 0.5;
