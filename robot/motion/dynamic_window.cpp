@@ -49,7 +49,7 @@ DynamicWindow::Scene DynamicWindow::look(const MotionTask& task, const Pose& map
     scene.hazard.push_back(p);
     if (norm(p) < clearance_reach) scene.near.push_back(p);
   }
-  const double to_goal = std::max(scene.path.remaining(), distance(task.goal.position(), map_from_base.position()));
+  const double to_goal = std::max(scene.path.remaining(), distance(task.path.back(), map_from_base.position()));
   const double approach = std::sqrt(2.0 * config_.goal_deceleration * to_goal);
   scene.speed_limit = std::clamp(std::min(task.speed_limit, approach), least_speed, body_.drive.max_linear);
   return scene;
@@ -228,7 +228,8 @@ MotionChoice DynamicWindow::choose(const MotionTask& task, const Pose& map_from_
     note_progress(choice.state == MotionState::driving, now, choice);
     return done();
   }
-  const Pose goal = relative(map_from_base, task.goal);
+  // The path ends where the robot can stand, as near to the goal as that is.
+  const Pose goal = relative(map_from_base, {task.path.back().x, task.path.back().y, task.goal.theta});
   const bool was_there = state_ == MotionState::arriving || state_ == MotionState::arrived;
   if (norm(goal.position()) <= (was_there ? 2.5 : 1.0) * config_.goal_distance) {
     const bool faces = !task.final_heading || std::abs(goal.theta) <= config_.goal_heading;

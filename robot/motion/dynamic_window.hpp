@@ -50,8 +50,8 @@ struct DynamicWindowConfig {
 };
 
 struct MotionTask {
-  std::vector<Point> path;     // map frame, from the robot to the goal; empty: stand still
-  Pose goal;                   // map frame
+  std::vector<Point> path;     // map frame, from the robot to where it shall arrive; empty: stand still
+  Pose goal;                   // map frame; the path may end beside it, where the robot can stand
   bool final_heading = false;  // whether goal.theta matters
   double speed_limit = 0.7;    // m/s
 };

@@ -168,6 +168,13 @@ TEST(DynamicWindow, TurnsOnTheSpotFirstAndFacesTheGoalAtTheEnd) {
   EXPECT_THAT(drive.robot.pose(), PoseNear(Pose{2, 5, pi / 2}, 0.1, radians(5)));
 }
 
+TEST(DynamicWindow, AGoalInATightPlaceIsReachedAsNearAsTheRobotCanStand) {
+  Drive drive(museum_of(hall(8, 6)), {4, 3, 0}, {4, 0.2, -pi / 2}, true);
+  ASSERT_TRUE(drive.run(30));
+  EXPECT_LT(drive.robot.pose().y, 0.5);
+  EXPECT_FALSE(drive.touched);
+}
+
 TEST(DynamicWindow, DrivesThroughADoor) {
   OccupancyGrid map = hall(10, 6);
   wall(map, {5.0, 0.0}, {5.15, 2.5});
