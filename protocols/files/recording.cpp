@@ -3,6 +3,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "protocols/files/mcap_format.hpp"
 #include "protocols/files/problem.hpp"
 #include "protocols/files/value_codec.hpp"
 
@@ -88,6 +89,34 @@ std::optional<RecordedEntry> RecordingReader::next() {
     }
   }
   return std::nullopt;
+}
+
+SensorLog sensor_log_of(RecordingReader& reader, const std::string& name) {
+  SensorLog log;
+  log.name = name;
+  const auto& lasers = reader.info().config.body.lasers;
+  while (const auto entry = reader.next()) {
+    const auto* input = std::get_if<robot::Input>(&*entry);
+    if (!input) continue;
+    if (const auto* odometry = std::get_if<robot::Odometry>(&input->event)) log.entries.emplace_back(*odometry);
+    const auto* scan = std::get_if<robot::LaserScan>(&input->event);
+    if (!scan || static_cast<std::size_t>(scan->laser) >= lasers.size()) continue;
+    log.entries.emplace_back(LoggedScan{*scan, lasers[static_cast<std::size_t>(scan->laser)].base_from_laser, -1});
+    ++log.scans;
+  }
+  log.bad_lines = static_cast<std::size_t>(reader.damaged());
+  if (log.scans == 0) throw FileError({name, 0, "holds no scans", "give a recording of a drive"});
+  return log;
+}
+
+SensorLog read_any_log(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string head(mcap::magic.size(), '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (head != mcap::magic) return read_log(path);
+  in.seekg(0);
+  RecordingReader reader(in, path.string());
+  return sensor_log_of(reader, path.string());
 }
 
 Recording read_recording(const std::filesystem::path& path) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "protocols/files/mcap.hpp"
+#include "protocols/files/sensor_log.hpp"
 #include "robot/config.hpp"
 #include "robot/inputs.hpp"
 #include "robot/outputs.hpp"
@@ -82,6 +83,13 @@ struct Recording {
   bool cut = false;
   int damaged = 0;
 };
+
+// What the robot's wheels and lasers said in the course of a recording.
+SensorLog sensor_log_of(RecordingReader& reader, const std::string& name);
+
+// A log of any kind that is known here: CARMEN's, the Wean course's (see sensor_log.hpp), or a recording.
+// Throws FileError when nothing can be read.
+SensorLog read_any_log(const std::filesystem::path& path);
 
 // All of a recording at once. Throws FileError.
 Recording read_recording(const std::filesystem::path& path);

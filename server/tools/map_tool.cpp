@@ -5,6 +5,7 @@
 
 #include "protocols/files/map_server_file.hpp"
 #include "protocols/files/problem.hpp"
+#include "protocols/files/recording.hpp"
 #include "robot/mapping/occupancy_mapper.hpp"
 #include "server/tools/relations.hpp"
 #include "server/tools/report.hpp"
@@ -88,7 +89,7 @@ KnownPoseMap map_from_poses(const files::SensorLog& log, const files::PoseTrack&
 
 nlohmann::json make_map(const MapOptions& options) {
   const auto windows = windows_of(options.from, options.to);
-  const auto log = files::read_log(options.log);
+  const auto log = files::read_any_log(options.log);
   const auto track = files::read_poses(options.poses);
   const auto begun = std::chrono::steady_clock::now();
   const auto made = map_from_poses(log, track, windows, options.resolution);
@@ -114,7 +115,7 @@ nlohmann::json make_map(const MapOptions& options) {
 void add_map_command(CLI::App& app) {
   auto* command = app.add_subcommand("map", "Make a map from a recorded log");
   auto options = std::make_shared<MapOptions>();
-  command->add_option("log", options->log, "CARMEN or Wean log, plain or gzipped")->required();
+  command->add_option("log", options->log, "CARMEN or Wean log, plain or gzipped, or a recording")->required();
   command->add_option("--poses", options->poses, "reference poses, a corrected log or poses.csv")->required();
   command->add_option("--out", options->out, "folder for map.yaml, map.pgm and poses.csv")->required();
   command->add_option("--from", options->from, "seconds on the log's clock; may be repeated with --to");

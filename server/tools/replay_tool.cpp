@@ -6,6 +6,7 @@
 #include "protocols/files/carmen_map.hpp"
 #include "protocols/files/fields.hpp"
 #include "protocols/files/problem.hpp"
+#include "protocols/files/recording.hpp"
 #include "server/tools/replay_score.hpp"
 #include "server/tools/report.hpp"
 
@@ -55,7 +56,7 @@ void align_clock(files::PoseTrack& truth, const files::SensorLog& log) {
 ReplaySetup prepare_replay(const ReplayOptions& options) {
   ReplaySetup setup;
   setup.windows = windows_of(options.from, options.to);
-  setup.log = files::read_log(options.log);
+  setup.log = files::read_any_log(options.log);
   setup.map = files::read_map(options.map);
   setup.seed = options.seed;
   if (!options.truth.empty()) {
@@ -98,7 +99,7 @@ int replay_main(const ReplayOptions& options) {
 CLI::App* add_replay_command(CLI::App& app, std::function<bool(const ReplayOptions&)> instead) {
   auto* command = app.add_subcommand("replay", "Localize over a recorded log");
   auto options = std::make_shared<ReplayOptions>();
-  command->add_option("log", options->log, "CARMEN or Wean log, plain or gzipped")->required();
+  command->add_option("log", options->log, "CARMEN or Wean log, plain or gzipped, or a recording")->required();
   command->add_option("--map", options->map, "map.yaml or its folder, a CARMEN .map or wean.dat")->required();
   command->add_option("--from", options->from, "seconds on the log's clock; may be repeated with --to");
   command->add_option("--to", options->to, "seconds on the log's clock");

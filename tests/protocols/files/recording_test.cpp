@@ -204,6 +204,27 @@ TEST(Recording, FlippedByteInAChunkIsFoundAndTheRestIsRead) {
   EXPECT_LT(recording.entries.size(), 400u);
 }
 
+TEST(Recording, IsALogForReplaysToo) {
+  std::ostringstream out;
+  {
+    Recorder recorder(out, some_info());
+    recorder.input({robot::from_seconds(1.0), robot::Odometry{robot::from_seconds(0.9), {1.0, 2.0, 0.5}, {}}});
+    robot::LaserScan scan;
+    scan.laser = robot::LaserId::rear;
+    scan.ranges = {1.0f, 2.0f};
+    recorder.input({robot::from_seconds(1.1), scan});
+    recorder.output(robot::from_seconds(1.1), robot::WheelCommand{});
+  }
+  const testing_support::TemporaryFolder folder;
+  const auto log = read_any_log(folder.write("day.mcap", out.str()));
+  EXPECT_EQ(log.scans, 1u);
+  ASSERT_THAT(log.entries, SizeIs(2));
+  const auto& logged = std::get<LoggedScan>(log.entries[1]);
+  EXPECT_EQ(logged.base_from_laser, some_info().config.body.lasers.at(1).base_from_laser);
+  EXPECT_EQ(logged.scan.ranges, (std::vector<float>{1.0f, 2.0f}));
+  EXPECT_EQ(read_any_log(folder.write("a.log", "ODOM 0 0 0 0 0 0 5 h 5\n")).entries.size(), 1u);
+}
+
 TEST(Recording, OtherFilesAreRefused) {
   EXPECT_THROW(read_back("hello"), FileError);
   EXPECT_THROW(read_recording("/nowhere/day.mcap"), FileError);
