@@ -56,6 +56,11 @@ bool is_control(Opcode opcode) { return static_cast<std::uint8_t>(opcode) >= 8; 
 
 bool is_known(std::uint8_t opcode) { return opcode <= 2 || (opcode >= 8 && opcode <= 10); }
 
+// The first two bytes of a client's frame: masked, no reserved bits, an opcode that exists.
+bool is_well_begun(std::string_view header) {
+  return (header[1] & 0x80) && !(header[0] & 0x70) && is_known(static_cast<std::uint8_t>(header[0] & 0x0F));
+}
+
 // Codes that a peer may send (RFC 6455, 7.4.2, and the registry's later ones).
 bool is_valid_close(std::string_view payload) {
   if (payload.empty()) return true;
@@ -101,7 +106,7 @@ std::optional<std::uint16_t> FrameReader::feed(std::span<const char> bytes, std:
       const std::size_t take = std::min(header_size() - header_.size(), bytes.size());
       header_.append(bytes.data(), take);
       bytes = bytes.subspan(take);
-      if (header_.size() == 2 && !(header_[1] & 0x80)) return failed_ = close_code::protocol_error;  // not masked
+      if (header_.size() == 2 && !is_well_begun(header_)) return failed_ = close_code::protocol_error;
       if (header_.size() < header_size()) {
         if (bytes.empty()) return std::nullopt;
         continue;
@@ -122,7 +127,6 @@ std::optional<std::uint16_t> FrameReader::feed(std::span<const char> bytes, std:
 
 std::optional<std::uint16_t> FrameReader::begin_frame() {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(header_[i]); };
-  if (!(byte(1) & 0x80) || (byte(0) & 0x70) || !is_known(byte(0) & 0x0F)) return close_code::protocol_error;
   final_ = byte(0) & 0x80;
   opcode_ = static_cast<Opcode>(byte(0) & 0x0F);
   left_ = byte(1) & 0x7F;
