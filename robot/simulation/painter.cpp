@@ -51,10 +51,15 @@ class ColumnPainter {
     double s = leave_mounting();
     double flat_from = s;
     SceneCell ground{};  // what the ray runs over
+    bool plain = true;
     while (s < far_plane && bottom_ > 0) {
       const Cell here = cells.cell(place(s));
       if (!cells.contains(here)) break;
       const double free = scene_.free_way[here];
+      if (free > 3.0 * r && plain) {  // over open floor without another look
+        s += (free - 1.5 * r) / stretch_;
+        continue;
+      }
       const SceneCell& cell = cells[here];
       const bool other = cell.height != ground.height || cell.material != ground.material ||
                          cell.exhibit != ground.exhibit || cell.glass != ground.glass;
@@ -64,6 +69,7 @@ class ColumnPainter {
         if (cell.height > ground.height) paint_side(cell, s, place(s));
         if (cell.height >= scene_.ceiling) return s;
         ground = cell;
+        plain = cell.height == 0.0f && !cell.glass && cell.material == Material::floor;
         flat_from = s;
       }
       s += free > 3.0 * r ? (free - 1.5 * r) / stretch_ : to_next_cell(place(s), here);
