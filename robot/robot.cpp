@@ -237,6 +237,7 @@ struct Robot::Parts {
       gate.add(readings, estimate.localized && !estimate.lost, now);
     }
     seen = people.people(now);
+    if (estimate.localized) gate.add(seen, estimate.map_from_base, now);
     follow_guide(now, out);
     steer(now);
     out.push_back(command(gate.limit(wanted, now)));

@@ -36,13 +36,16 @@ void DynamicWindow::reset() {
 
 DynamicWindow::Scene DynamicWindow::look(const MotionTask& task, const Pose& map_from_base, const Twist& current,
                                          std::span<const Obstacle> obstacles, const VirtualReadings& hazards) const {
-  Scene scene{PathAhead(task.path, map_from_base, config_.reach), {}, {}, {}, {}, &hazards, current, 0.0};
+  Scene scene{PathAhead(task.path, map_from_base, config_.reach), {}, {}, {}, {}, {}, &hazards, current, 0.0};
   for (const Obstacle& o : obstacles) {
     if (!is_finite(o.position) || norm(o.position) > config_.reach) continue;
     scene.solid.push_back(o.position);
     const bool walks = o.velocity.x != 0.0 || o.velocity.y != 0.0;
     if (walks) scene.solid.push_back(o.position + config_.prediction.count() * o.velocity);
-    if (walks) scene.walking.push_back(o);
+    if (walks) {
+      scene.walking.push_back(o.position);
+      scene.velocity.push_back(o.velocity);
+    }
     if (!walks && norm(o.position) < clearance_reach) scene.near.push_back(o.position);
   }
   for (const Point& p : hazards.points) {
@@ -75,13 +78,15 @@ double DynamicWindow::clearance(const Scene& scene, const Twist& twist, double s
   double least = config_.comfortable;
   for (int i = 1; i <= judged_poses; ++i) {
     const double t = seconds * i / judged_poses;
-    const Pose pose = arc(twist, t), there = inverse(pose);
-    const float standing = sweep::least_distance(
-        box, static_cast<float>(pose.x), static_cast<float>(pose.y), static_cast<float>(std::cos(pose.theta)),
-        static_cast<float>(std::sin(pose.theta)), scene.near.x.data(), scene.near.y.data(), nullptr, scene.near.size());
-    least = std::min(least, std::max(0.0, static_cast<double>(standing)));
-    for (const Obstacle& o : scene.walking)
-      least = std::min(least, distance_to(f, there * (o.position + t * o.velocity)));
+    const Pose pose = arc(twist, t);
+    const auto x = static_cast<float>(pose.x), y = static_cast<float>(pose.y);
+    const auto c = static_cast<float>(std::cos(pose.theta)), d = static_cast<float>(std::sin(pose.theta));
+    const float standing =
+        sweep::least_distance(box, x, y, c, d, scene.near.x.data(), scene.near.y.data(), nullptr, scene.near.size());
+    const float walking = sweep::least_distance_moving(box, x, y, c, d, scene.walking.x.data(), scene.walking.y.data(),
+                                                       scene.velocity.x.data(), scene.velocity.y.data(),
+                                                       static_cast<float>(t), scene.walking.size());
+    least = std::min(least, static_cast<double>(std::max(0.0f, std::min(standing, walking))));
   }
   return least;
 }

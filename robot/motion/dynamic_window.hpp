@@ -81,8 +81,8 @@ class DynamicWindow {
     PathAhead path;
     PointColumns solid;  // what stands, and walkers where they are and will be
     PointColumns hazard;
-    PointColumns near;  // what stands near enough to matter for clearance
-    std::vector<Obstacle> walking;
+    PointColumns near;               // what stands near enough to matter for clearance
+    PointColumns walking, velocity;  // who walks there, and how
     const VirtualReadings* readings = nullptr;
     Twist current;
     double speed_limit = 0.0;  // m/s, the goal's distance included

@@ -65,6 +65,16 @@ void SafetyGate::add(const VirtualReadings& readings, bool localized, Time now) 
   readings_heard_ = now;
 }
 
+void SafetyGate::add(const People& people, const Pose& map_from_base, Time now) {
+  const Pose odom_from_map = scans_.odometry().odom_from_base * inverse(map_from_base);
+  bodies_.clear();
+  for (const PersonSeen& person : people.people) {
+    if (!is_finite(person.position) || distance(person.position, map_from_base.position()) > config_.reach) continue;
+    for (const Point& p : body_outline(person)) bodies_.push_back(odom_from_map * p);
+  }
+  bodies_heard_ = now;
+}
+
 void SafetyGate::set_speed_limit(double linear) {
   speed_limit_ = std::isfinite(linear) ? std::clamp(linear, 0.0, body_.drive.max_linear) : 0.0;
 }
@@ -167,10 +177,19 @@ VirtualReadings SafetyGate::readings_now() const {
   return moved;
 }
 
+// What the lasers see, and the bodies above the legs.
+std::vector<Point> SafetyGate::obstacles_now(Time now) const {
+  std::vector<Point> seen = scans_.points(config_.reach);
+  if (!younger(bodies_heard_, config_.people_stale, now)) return seen;
+  const Pose base_from_odom = inverse(scans_.odometry().odom_from_base);
+  for (const Point& p : bodies_) seen.push_back(base_from_odom * p);
+  return seen;
+}
+
 WheelCommand SafetyGate::clear_ahead(const Twist& wanted, Time now) {
   if (stands(wanted)) return {wanted, GateReason::none};
   if (younger(held_, config_.stop_hold, now) && wanted.linear * held_direction_ > 0.0) return {{}, held_reason_};
-  const std::vector<Point> seen = scans_.points(config_.reach);
+  const std::vector<Point> seen = obstacles_now(now);
   const bool near_hazards = hazards_ && younger(readings_heard_, config_.pose_stale, now);
   const VirtualReadings readings = near_hazards ? readings_now() : VirtualReadings{};
   PointColumns points;

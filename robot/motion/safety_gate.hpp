@@ -35,6 +35,7 @@ namespace robot {
 struct SafetyGateConfig {
   Seconds laser_stale{0.3};
   Seconds odometry_stale{0.3};
+  Seconds people_stale{0.5};
   Seconds pose_stale{0.5};  // virtual readings older than this do not count
   Seconds bumper_hold{1.0};
   Seconds stall_hold{0.5};
@@ -60,6 +61,8 @@ class SafetyGate {
   void add(const DeviceState& state);
   // Virtual readings of the newest belief; localized: whether the belief can be trusted at all.
   void add(const VirtualReadings& readings, bool localized, Time now);
+  // People as they are tracked: their bodies are wider than the legs that the lasers see.
+  void add(const People& people, const Pose& map_from_base, Time now);
   void stop() { stopped_ = true; }  // by hand
   void resume() { stopped_ = false; }
   bool stopped() const { return stopped_; }
@@ -85,6 +88,7 @@ class SafetyGate {
   GateReason in_the_way(const Twist& twist, const std::vector<Point>& seen, const VirtualReadings* hazards,
                         Time now) const;
   VirtualReadings readings_now() const;
+  std::vector<Point> obstacles_now(Time now) const;
 
   Body body_;
   SafetyGateConfig config_;
@@ -98,6 +102,8 @@ class SafetyGate {
   Pose readings_at_;  // odom frame
   bool localized_ = false;
   std::optional<Time> readings_heard_;
+  std::vector<Point> bodies_;  // odom frame
+  std::optional<Time> bodies_heard_;
   bool stopped_ = false;
   double speed_limit_ = 0.7;
   std::optional<Time> bumped_[2];  // front, rear: when it was last pressed

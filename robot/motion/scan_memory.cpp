@@ -7,7 +7,9 @@ namespace robot {
 namespace {
 
 constexpr double person_reach = 0.5;  // m from a person's centre within which beam ends are theirs
-constexpr double walking = 0.15;      // m/s; slower people count as standing
+constexpr double torso = 0.23;        // m, radius of a body seen from above
+constexpr int outline_points = 12;
+constexpr double walking = 0.15;  // m/s; slower people count as standing
 
 constexpr double hidden_reach = 0.8;  // m to the side within which hidden points matter
 constexpr Seconds hidden_for{10.0};   // how long they are remembered
@@ -96,19 +98,28 @@ std::optional<Time> ScanMemory::scanned(LaserId laser) const {
   return sweep.time;
 }
 
-std::vector<Obstacle> with_motion(std::span<const Point> base_points, const People& people, const Pose& map_from_base) {
-  std::vector<Obstacle> moving;
-  const Pose base_from_map = inverse(map_from_base), turn{0.0, 0.0, base_from_map.theta};
-  for (const PersonSeen& person : people.people) {
-    if (norm(person.velocity) < walking) continue;
-    moving.push_back({base_from_map * person.position, turn * person.velocity});
+std::vector<Point> body_outline(const PersonSeen& person) {
+  std::vector<Point> outline;
+  for (int i = 0; i < outline_points; ++i) {
+    const double angle = 2.0 * pi * i / outline_points;
+    outline.push_back(person.position + torso * Point{std::cos(angle), std::sin(angle)});
   }
-  std::vector<Obstacle> obstacles;
-  obstacles.reserve(base_points.size());
+  return outline;
+}
+
+std::vector<Obstacle> with_motion(std::span<const Point> base_points, const People& people, const Pose& map_from_base) {
+  const Pose base_from_map = inverse(map_from_base), turn{0.0, 0.0, base_from_map.theta};
+  std::vector<Obstacle> walkers, obstacles;
+  for (const PersonSeen& person : people.people) {
+    const bool walks = norm(person.velocity) >= walking;
+    const Point velocity = walks ? turn * person.velocity : Point{};
+    if (walks) walkers.push_back({base_from_map * person.position, velocity});
+    for (const Point& p : body_outline(person)) obstacles.push_back({base_from_map * p, velocity});
+  }
   for (const Point& p : base_points) {
     Obstacle obstacle{p, {}};
     double nearest = person_reach;
-    for (const Obstacle& person : moving) {
+    for (const Obstacle& person : walkers) {
       const double away = distance(p, person.position);
       if (away >= nearest) continue;
       nearest = away;

@@ -61,7 +61,10 @@ class ScanMemory {
   std::vector<Unseen> unseen_;
 };
 
-// Gives points near tracked people those people's motion; all others stand still.
+// Lasers see legs; the body above them is wider. Points round each person's body, map frame (m).
+std::vector<Point> body_outline(const PersonSeen& person);
+
+// Points near tracked people get those people's motion, all others stand still; and the people's bodies are added.
 std::vector<Obstacle> with_motion(std::span<const Point> base_points, const People& people, const Pose& map_from_base);
 
 }  // namespace robot

@@ -58,20 +58,35 @@ float turning(const Box& box, float radius, float sign, const float* x, const fl
   return nearest;
 }
 
+namespace {
+
+inline float box_distance(const Box& box, float dx, float dy, float cosine, float sine) {
+  const float bx = cosine * dx + sine * dy, by = cosine * dy - sine * dx;
+  const float ox = std::max(bx - box.front, -box.rear - bx), oy = std::abs(by) - box.half_width;
+  const float ux = std::max(ox, 0.0f), uy = std::max(oy, 0.0f);
+  return std::sqrt(ux * ux + uy * uy) + std::min(std::max(ox, oy), 0.0f);
+}
+
+}  // namespace
+
 float least_distance(const Box& box, float px, float py, float cosine, float sine, const float* x, const float* y,
                      const float* allowance, std::size_t count) {
   float least = far_away;
-  const auto distance = [&](std::size_t i) {
-    const float dx = x[i] - px, dy = y[i] - py;
-    const float bx = cosine * dx + sine * dy, by = cosine * dy - sine * dx;
-    const float ox = std::max(bx - box.front, -box.rear - bx), oy = std::abs(by) - box.half_width;
-    const float ux = std::max(ox, 0.0f), uy = std::max(oy, 0.0f);
-    return std::sqrt(ux * ux + uy * uy) + std::min(std::max(ox, oy), 0.0f);
-  };
+  const auto distance = [&](std::size_t i) { return box_distance(box, x[i] - px, y[i] - py, cosine, sine); };
   if (allowance) {
     for (std::size_t i = 0; i < count; ++i) least = std::min(least, distance(i) - allowance[i]);
   } else {
     for (std::size_t i = 0; i < count; ++i) least = std::min(least, distance(i));
+  }
+  return least;
+}
+
+float least_distance_moving(const Box& box, float px, float py, float cosine, float sine, const float* x,
+                            const float* y, const float* vx, const float* vy, float seconds, std::size_t count) {
+  float least = far_away;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float dx = x[i] + seconds * vx[i] - px, dy = y[i] + seconds * vy[i] - py;
+    least = std::min(least, box_distance(box, dx, dy, cosine, sine));
   }
   return least;
 }

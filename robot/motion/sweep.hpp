@@ -23,4 +23,8 @@ float turning(const Box& box, float radius, float sign, const float* x, const fl
 float least_distance(const Box& box, float px, float py, float cosine, float sine, const float* x, const float* y,
                      const float* allowance, std::size_t count);
 
+// The same for points that have gone on for some seconds with their own velocities (vx, vy).
+float least_distance_moving(const Box& box, float px, float py, float cosine, float sine, const float* x,
+                            const float* y, const float* vx, const float* vy, float seconds, std::size_t count);
+
 }  // namespace robot::sweep

@@ -56,7 +56,7 @@ std::vector<PersonBody> find_bodies(const ScanView& scan, const PeopleConfig& co
       Point sum;
       for (int i = from; i < to; ++i) sum = sum + cluster.ends[static_cast<std::size_t>(i)];
       const Point near_side = (1.0 / (to - from)) * sum;
-      const Point center = ((norm(near_side) + config.body_radius) / norm(near_side)) * near_side;
+      const Point center = ((norm(near_side) + config.leg_radius) / norm(near_side)) * near_side;
       bodies.push_back({scan.map_from_laser * center, to - from});
     }
   }

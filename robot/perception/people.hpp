@@ -13,7 +13,7 @@ namespace robot {
 struct PeopleConfig {
   double max_range = 8.0;         // m; farther away too few beams meet a person
   double gap = 0.25;              // m between beam ends within which they belong together
-  double body_radius = 0.2;       // m; beams meet the near side of a body
+  double leg_radius = 0.06;       // m; beams meet the near side of the legs
   double max_width = 0.9;         // m; wider clusters are several people side by side
   int min_beams = 2;              // a single beam within 3 m is noise
   double gate = 0.6;              // m between a track's prediction and a body

@@ -20,7 +20,7 @@ struct Walker {
   Point velocity;
 };
 
-// A scan of 181 beams over a hall in which round people of 0.2 m stand; everything else is the map, 8 m away.
+// A scan of 181 beams over a hall in which round people of 0.1 m stand; everything else is the map, 8 m away.
 ScanView scan_of(const std::vector<Walker>& walkers, const Pose& map_from_laser, Time time, Random& random) {
   ScanView scan;
   scan.time = time;
@@ -33,7 +33,7 @@ ScanView scan_of(const std::vector<Walker>& walkers, const Pose& map_from_laser,
     double range = 8.0;
     for (const Walker& walker : walkers) {
       const Point center = walker.position - map_from_laser.position();
-      const double along = dot(center, ray), half = 0.04 - std::pow(cross(ray, center), 2);
+      const double along = dot(center, ray), half = 0.01 - std::pow(cross(ray, center), 2);
       if (half > 0.0 && along > 0.0) range = std::min(range, along - std::sqrt(half));
     }
     scan.kinds.push_back(range < 8.0 ? BeamKind::person : BeamKind::map);
