@@ -52,6 +52,7 @@ class GlobalSearch {
   void start(Look look);
   // Goes on for `units` of about 0.1 ms. True while there is more to do.
   bool step(int units);
+  void cancel() { stage_ = Stage::idle; }
   bool running() const { return stage_ != Stage::idle; }
   const Look& look() const { return look_; }
   // The possible places, best first; complete when step() has returned false.

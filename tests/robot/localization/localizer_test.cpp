@@ -164,6 +164,20 @@ TEST(Localizer, FindsItselfFromNothing) {
   EXPECT_THAT(drive.localizer.estimate().map_from_base, PoseNear(drive.truth, 0.06, 0.02));
 }
 
+TEST(Localizer, ANewStartEndsARunningSearch) {
+  Drive drive(hall());
+  drive.localizer.move(drive.odom, drive.time);
+  drive.localizer.start_globally();
+  const LaserScan scan = take_scan(drive.world, drive.truth, {}, drive.random);
+  drive.localizer.update(scan, {}, drive.odom);
+  drive.localizer.update(scan, {}, drive.odom);
+  ASSERT_TRUE(drive.localizer.work(1));
+  const Pose carried{5.0, 11.0, 2.2};  // staff took the robot elsewhere and say so
+  drive.localizer.start_at(carried, 0.05, 0.02);
+  EXPECT_FALSE(drive.localizer.work(1000));
+  EXPECT_THAT(drive.localizer.estimate().map_from_base, PoseNear(carried, 0.05));
+}
+
 TEST(Localizer, SaysWhenTwoPlacesLookAlike) {
   Drive drive(nearly_symmetric());
   drive.truth = {2.5, 1.5, 0.3};

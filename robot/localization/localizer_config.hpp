@@ -1,0 +1,43 @@
+// All settings of the localizer, with their defaults.
+#pragma once
+
+#include "robot/localization/beam_reading.hpp"
+#include "robot/localization/global_search.hpp"
+#include "robot/localization/likelihood_field.hpp"
+#include "robot/localization/lost.hpp"
+#include "robot/localization/monte_carlo.hpp"
+#include "robot/localization/motion_model.hpp"
+#include "robot/localization/scan_match.hpp"
+#include "robot/time.hpp"
+
+namespace robot {
+
+struct LocalizerConfig {
+  MonteCarloConfig particles;
+  MotionNoise motion;
+  LikelihoodConfig likelihood;
+  BeamReadingConfig reading;
+  ScanMatchConfig match;
+  GlobalSearchConfig search;
+  LostConfig lost;
+  int beams = 60;                    // a scan is thinned to this many for weighing
+  double update_after_metres = 0.1;  // of way since the samples were last weighed ...
+  double update_after_turn = 0.05;   // rad ... or of turning ...
+  Seconds update_after_rest{1.0};    // ... or of standing still
+  double rest_temper = 0.3;          // what a scan counts at rest: it repeats what the last one said
+  double unfiltered_share = 0.1;     // of beams that pass the distance filter untested: evidence against a wrong belief
+  int filter_samples = 16;           // of the belief, that the distance filter asks
+  double match_share = 0.05;         // of the samples, drawn anew round each accepted scan match
+  double doubt_above = 0.1;          // share of impossible beams over the usual: worth a look round the belief
+  double doubt_gain = 3.0;           // nats of the beam model that a place found there must be better
+  double doubt_share = 0.2;          // of the samples, drawn at a better place found there
+  double surface_offset = 0.0;       // m, see LikelihoodField; where tracking starts from ...
+  bool learn_surface_offset = true;  // ... when it may be learned while localized
+  Seconds search_again{3.0};         // while lost, not yet localized or suspicious
+  double suspicious_below = 0.35;    // share of beams that meet the map, for a while: worth a search though localized
+  double adopting_margin = 6.0;      // nats a place found must then be better than where the robot is believed to be
+  int looks_at_rest = 3;             // that a lost robot which stands still must find the same place in
+  double worth_adopting = 0.5;       // share of its beams that a place found must explain to replace a belief
+};
+
+}  // namespace robot
