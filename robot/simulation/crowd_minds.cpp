@@ -8,9 +8,9 @@
 namespace robot::simulation {
 namespace {
 
-constexpr double notice_within = 9.0;  // m from which the robot catches the eye
-constexpr double ear_shot = 4.0;       // m
-constexpr double in_the_way = 0.9;     // m before the footprint
+constexpr double notice_within = 9.0;   // m from which the robot catches the eye
+constexpr double ear_shot = 4.0;        // m
+constexpr double in_the_way = 0.9;      // m before the footprint
 constexpr double lose_interest = 11.0;  // m
 
 double exponential(Random& random, double mean) { return -mean * std::log(1.0 - random.uniform()); }
