@@ -1,4 +1,5 @@
 // Every REST path with a robot that answers at once.
+#include <SQLiteCpp/Database.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -127,6 +128,31 @@ TEST(Rest, GivesTheSameAnswerForTheSameKey) {
   EXPECT_EQ(again.body, body);
   EXPECT_EQ(again.header("location"), location);
   EXPECT_EQ(client.get(location).json()["state"], "pending");
+}
+
+TEST(Rest, RefusesWhatItCannotStoreAndRecovers) {
+  const TemporaryFolder folder;
+  server::WebOptions options;
+  options.database = (folder.path() / "docent.db").string();
+  WebHouse house(options);
+  HttpClient client(house.port);
+  {
+    SQLite::Database other(options.database, SQLite::OPEN_READWRITE);
+    other.exec("BEGIN IMMEDIATE");  // nobody else can write
+    const auto refused = client.post(api + "queue", {{"exhibit", "orrery"}});
+    EXPECT_EQ(refused.status, 503);
+    EXPECT_EQ(refused.json()["code"], "storage");
+    house.on_web([&] { EXPECT_EQ(house.robot.requests.at(1).state, robot::RequestState::cancelled); });
+    EXPECT_EQ(client.request("POST", api + "stop").status, 200) << "stopping needs no disk";
+    other.exec("ROLLBACK");
+  }
+  int status = 0;
+  for (int i = 0; i < 50 && status != 201; ++i) {
+    status = client.post(api + "queue", {{"exhibit", "orrery"}}).status;
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  EXPECT_EQ(status, 201) << "without a restart";
+  EXPECT_EQ(client.get(api + "health").json()["database"], true);
 }
 
 TEST(Rest, KnowsStaff) {
