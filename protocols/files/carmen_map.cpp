@@ -136,6 +136,10 @@ robot::OccupancyGrid parse_wean_map(std::string_view text, const std::string& na
           !(resolution >= 0.001 && resolution <= 10.0)) {
         throw FileError({name, number, "the map has an unusable size or resolution", "give columns and rows"});
       }
+      // A value takes two characters at least: what the text cannot hold takes no memory.
+      if (static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) * 2 > text.size()) {
+        throw FileError({name, number, "the map is cut short", "fetch it again"});
+      }
       grid = robot::OccupancyGrid(*width, *height, resolution, {}, robot::unknown_cell);
       return;
     }
