@@ -93,7 +93,7 @@ struct Museum {
   std::vector<WallCamera> cameras;
   Pose home;  // homing position when idle
   SpeedLimits speed;
-  int visitors = 50;                 // in the house at a usual hour; the simulation's default
+  int visitors = 50;  // in the house at a usual hour; the simulation's default
 };
 
 const Exhibit* find_exhibit(const Museum& museum, const std::string& id);

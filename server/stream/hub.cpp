@@ -180,7 +180,8 @@ HubStatistics Hub::statistics() const {
 void Hub::count(const TopicSet& topics, int change) {
   for (std::size_t topic = 0; topic < most_topics; ++topic) {
     if (topics.test(topic)) watching_[topic] += change;
-    if (watching_[topic] == 0 && is_on_demand(topic)) newest_[topic].reset();  // it would be old when it is wanted again
+    if (watching_[topic] == 0 && is_on_demand(topic))
+      newest_[topic].reset();  // it would be old when it is wanted again
   }
 }
 

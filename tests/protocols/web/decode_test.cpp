@@ -24,12 +24,12 @@ TEST(Names, AreTrimmedAndVisible) {
   EXPECT_EQ(std::get<std::string>(decode_name("木村")), "木村");
   EXPECT_EQ(std::get<std::string>(decode_name(std::string(40, 'x'))).size(), 40u);
   for (const std::string& bad : {std::string(), std::string("   "), std::string(41, 'x'), std::string("a\nb"),
-                                std::string("a\0b", 3), std::string("a\x7F"), std::string("a\xC2\x85"),
-                                std::string("\xE2\x80\xAE"
-                                            "evil"),
-                                std::string("zero\xE2\x80\x8Bwidth"), std::string("\xFF"),
-                                std::string("\xEF\xBB\xBF"
-                                            "x")}) {
+                                 std::string("a\0b", 3), std::string("a\x7F"), std::string("a\xC2\x85"),
+                                 std::string("\xE2\x80\xAE"
+                                             "evil"),
+                                 std::string("zero\xE2\x80\x8Bwidth"), std::string("\xFF"),
+                                 std::string("\xEF\xBB\xBF"
+                                             "x")}) {
     EXPECT_EQ(code(decode_name(bad)), "bad_name") << bad;
   }
 }
