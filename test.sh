@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs every test.
+# Installs what is missing, builds everything and runs the tests.
+#   ./test.sh --all     also with the sanitizers, and clang-tidy over every source
 set -euo pipefail
 cd "$(dirname "$0")"
 docker/install.sh
@@ -17,6 +18,8 @@ echo "== pages"
 npm --prefix web run --silent check
 npm --prefix web test --silent
 npm --prefix web run --silent test:browser
+
+[ "${1:-}" = "--all" ] || exit 0
 
 echo "== sanitizers"
 docker/build.sh asan all
