@@ -12,7 +12,8 @@ cmake --build --preset "$preset" --target "${@:-docent}"
 # The pages: packages only when the lock file changed, bundles only when a source changed.
 stamp=web/node_modules/.docent-lock
 if ! cmp -s web/package-lock.json "$stamp"; then
-  npm --prefix web ci --no-audit --no-fund --loglevel=error
+  # Not `npm ci`: the lock file may lack packages for other kinds of machine, which npm ci refuses.
+  npm --prefix web install --no-save --no-audit --no-fund --loglevel=error
   cp web/package-lock.json "$stamp"
 fi
 if [ ! -f web/dist/index.html ] || [ -n "$(find web static/fonts static/icons protocols/web -newer web/dist/index.html -type f \
