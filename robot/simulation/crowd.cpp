@@ -8,7 +8,7 @@
 namespace robot::simulation {
 namespace {
 
-constexpr double margin = 0.04;     // m that attentive people keep from the robot, whatever pushes them
+constexpr double margin = 0.08;     // m that attentive people keep from the robot, whatever pushes them
 constexpr double wall_core = 0.12;  // m from walls that nobody is pushed below
 constexpr double max_speed = 2.6;   // m/s
 constexpr int think_every = 8;      // steps; each step another eighth of the people thinks

@@ -104,7 +104,7 @@ Point Crowd::push_of_robot(std::size_t i, const RobotSeen& robot) const {
   };
   const Point now = from(robot.pose, 1.0);
   if (std::abs(robot.twist.linear) < 0.05 && std::abs(robot.twist.angular) < 0.1) return now;
-  if (person.doing == Doing::blocking) return now;
+  if (person.doing == Doing::blocking && std::abs(robot.twist.angular) < 0.1) return now;
   return now + from(robot.pose * arc(robot.twist, look_ahead), 0.7);
 }
 

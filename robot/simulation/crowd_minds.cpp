@@ -162,7 +162,11 @@ void Crowd::attend_robot(std::size_t i, double dt, const RobotSeen& robot) {
   const double bearing = bearing_from(robot, person.position);
   const double gap = nearest_place(robot.footprint, robot.pose, person.position).distance;
   if (person.doing == Doing::blocking) {
-    return go(i, robot.pose * Point{robot.footprint.front + 0.75, 0.0}, 1.5, 0.3);
+    // Round the robot, not through it.
+    const Point local = inverse(robot.pose) * person.position;
+    const bool beside = local.x < robot.footprint.front + 0.2;
+    const double side = local.y >= 0.0 ? 0.85 : -0.85;
+    return go(i, robot.pose * Point{robot.footprint.front + (beside ? 0.4 : 0.75), beside ? side : 0.0}, 1.5, 0.3);
   }
   // What happens when one steps before it? Children run round it for that, others need to be there already.
   const bool may_block =
