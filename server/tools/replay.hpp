@@ -34,7 +34,7 @@ struct ReplayStep {
   robot::ScanView scan;
   bool lost = false;       // the localizer says so
   bool weighed = false;    // the belief was weighed by this scan
-  double scan_ms = 0.0;    // of this machine's time: motion since the last scan and the scan itself
+  double scan_ms = 0.0;    // of processor time: motion since the last scan and the scan itself
   double search_ms = 0.0;  // of the search over the whole map that went on beside it
   double path_m = 0.0;     // of odometry since the start
   std::optional<robot::Pose> truth;
