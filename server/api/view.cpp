@@ -131,11 +131,12 @@ void View::tell(const robot::RequestChanged& changed) {
   const bool state_changed = is_new || known->second.state != request.state || known->second.reason != request.reason;
   if (!is_new) request.asked = known->second.asked;  // of the run in which it was asked
   if (is_new) ++statistics_.requests;
-  if (state_changed && !is_open(request)) {
+  if (!is_open(request) && (is_new || is_open(known->second))) {
     ended_.push_back(request.id);
     if (request.state == robot::RequestState::fulfilled) ++statistics_.fulfilled;
     if (request.state == robot::RequestState::failed) ++statistics_.failed;
   }
+  if (is_open(request)) std::erase(ended_, request.id);
   requests_[request.id] = request;
   while (ended_.size() > ended_kept) {
     requests_.erase(ended_.front());

@@ -39,7 +39,9 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   void event(const Frame& frame);
   // An answer to this viewer alone, ahead of everything.
   void answer(protocols::web::Opcode opcode, std::string_view payload);
-  void forget(std::size_t slot) { outbox_.clear(slot); }
+  void forget(std::size_t slot) {
+    if (!closing_) outbox_.clear(slot);
+  }
   // Says why and ends the line once what is under way has been sent.
   void close(std::uint16_t code, std::string_view reason);
 
