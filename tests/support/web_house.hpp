@@ -148,6 +148,8 @@ class WebHouse {
 
  private:
   net::io_context context_;
+  // A web that has stopped leaves nothing to run, and the thread must still take work.
+  net::executor_work_guard<net::io_context::executor_type> working_ = net::make_work_guard(context_);
   robot::Time now_;
   std::unique_ptr<server::Web> web_;
   std::thread thread_;
