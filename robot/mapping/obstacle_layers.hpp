@@ -22,7 +22,7 @@ struct ObstacleLayersConfig {
   double laser_reach = 8.0;    // m; farther hits are left to the next look
   double sonar_reach = 1.5;    // m; farther echoes are too wide to say where
   double clear_margin = 0.15;  // m; a beam must pass a cell by this much to clear it
-  int laser_gain = 10;         // per cent a hit; a cell counts as blocked from 50 on
+  int laser_gain = 3;          // per cent a hit; blocked from 50 on, after 0.7 s: walkers leave no trace
   int sonar_gain = 20;         // per cent an echo that nothing known explains
 };
 

@@ -2,41 +2,53 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 
 #include "robot/geometry/polygon.hpp"
 
 namespace robot {
 namespace {
 
-constexpr double first_speed = 1.0;  // m/s, one standard deviation of somebody just seen
-constexpr double fastest = 2.0;      // m/s; faster is a mistaken match
-constexpr double close_range = 3.0;  // m within which a person meets several beams
-constexpr int most_ahead_beams = 2;  // beams in a row that may miss within one body
+constexpr double first_speed = 1.0;   // m/s, one standard deviation of somebody just seen
+constexpr double fastest = 2.0;       // m/s; faster is a mistaken match
+constexpr double close_range = 3.0;   // m within which a person meets several beams
+constexpr double pass_margin = 0.35;  // m by which beams must pass a track that has gone
+constexpr double sure_motion = 1.5;   // standard deviations above which a velocity is told
 
 struct Cluster {
   std::vector<Point> ends;  // laser frame
   double range_sum = 0.0;   // m
 };
 
-// Beams that follow each other and end near each other.
+// Beams in order that end near one of the last few ends of a cluster: two legs, and what shows between them.
 std::vector<Cluster> clusters_of(const ScanView& scan, const PeopleConfig& config) {
   std::vector<Cluster> clusters;
-  std::size_t last = 0;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range = scan.ranges[i];
     if (scan.kinds[i] != BeamKind::person || !(range > 0.0) || !(range <= config.max_range)) continue;
     const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_step;
     const Point end{range * std::cos(angle), range * std::sin(angle)};
-    const bool joins =
-        !clusters.empty() && i - last <= 1 + most_ahead_beams &&
-        distance(clusters.back().ends.back(), end) <= std::max(config.gap, 3.0 * range * scan.angle_step);
-    if (!joins) clusters.emplace_back();
-    clusters.back().ends.push_back(end);
-    clusters.back().range_sum += range;
-    last = i;
+    const double gap = std::max(config.gap, 3.0 * range * scan.angle_step);
+    const auto joins = [&](const Cluster& c) { return distance(c.ends.back(), end) <= gap; };
+    // Somebody nearer may stand between the legs of somebody behind.
+    auto cluster = std::find_if(clusters.rbegin(), clusters.rend(), joins);
+    if (cluster == clusters.rend()) {
+      clusters.emplace_back();
+      cluster = clusters.rbegin();
+    }
+    cluster->ends.push_back(end);
+    cluster->range_sum += range;
   }
   return clusters;
+}
+
+// Whether the beams on both sides of a place in the laser's sight fly past it.
+bool seen_through(const ScanView& scan, Point in_laser) {
+  const double beam = (std::atan2(in_laser.y, in_laser.x) - scan.angle_min) / scan.angle_step;
+  if (!(beam >= 1.0) || !(beam + 2.0 < static_cast<double>(scan.ranges.size()))) return false;
+  const auto i = static_cast<std::size_t>(beam);
+  const double needed = norm(in_laser) + pass_margin;
+  return scan.ranges[i] > needed && scan.ranges[i + 1] > needed;  // false for NaN
 }
 
 }  // namespace
@@ -89,8 +101,13 @@ void PeopleTracker::correct(Track& track, Point measured) const {
 
 void PeopleTracker::add(const ScanView& scan) {
   for (Track& track : tracks_) predict(track, scan.time);
-  std::vector<PersonBody> bodies = find_bodies(scan, config_);
-  // Nearest pairs first, each track and body once.
+  const std::vector<PersonBody> bodies = find_bodies(scan, config_);
+  match(bodies, scan.time);
+  drop_gone(scan);
+}
+
+// Nearest pairs first, each track and body once; bodies that are left begin tracks.
+void PeopleTracker::match(const std::vector<PersonBody>& bodies, Time time) {
   struct Pair {
     double away;
     std::size_t track, body;
@@ -109,17 +126,33 @@ void PeopleTracker::add(const ScanView& scan) {
     track_taken[pair.track] = body_taken[pair.body] = true;
     Track& track = tracks_[pair.track];
     correct(track, bodies[pair.body].position);
-    track.seen = scan.time;
+    track.seen = time;
     ++track.sightings;
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (body_taken[b] || tracks_.size() >= config_.most_people) continue;
-    Track track{next_id_++, scan.time, scan.time, bodies[b].position, {}, 0.0, 0.0, 0.0, 1};
+    Track track{next_id_++, time, time, bodies[b].position, {}, 0.0, 0.0, 0.0, 1};
     track.var_position = config_.position_noise * config_.position_noise;
     track.var_velocity = first_speed * first_speed;
     tracks_.push_back(track);
   }
-  std::erase_if(tracks_, [&](const Track& track) { return scan.time - track.seen > config_.lost_after; });
+}
+
+// Tracks that nobody has seen for long, that beams fly through, or that follow the same person as an older one.
+void PeopleTracker::drop_gone(const ScanView& scan) {
+  const Pose laser_from_map = inverse(scan.map_from_laser);
+  std::vector<Track> kept;
+  for (const Track& track : tracks_) {
+    const Seconds unseen = scan.time - track.seen;
+    if (unseen > config_.lost_after) continue;
+    if (unseen > config_.gone_after && seen_through(scan, laser_from_map * track.position)) continue;
+    const auto same = [&](const Track& older) {
+      return distance(older.position, track.position) < config_.same_person;
+    };
+    if (std::any_of(kept.begin(), kept.end(), same)) continue;
+    kept.push_back(track);
+  }
+  tracks_ = std::move(kept);
 }
 
 People PeopleTracker::people(Time now) const {
@@ -127,7 +160,9 @@ People PeopleTracker::people(Time now) const {
   for (const Track& track : tracks_) {
     if (track.sightings < config_.confirm_after || now - track.seen > config_.lost_after) continue;
     const double dt = std::clamp(Seconds(now - track.time).count(), 0.0, config_.lost_after.count());
-    people.people.push_back({track.position + dt * track.velocity, track.velocity, track.id});
+    const bool sure = norm(track.velocity) > sure_motion * std::sqrt(track.var_velocity);
+    const Point velocity = sure ? track.velocity : Point{};
+    people.people.push_back({track.position + dt * velocity, velocity, track.id});
   }
   return people;
 }

@@ -12,16 +12,18 @@ namespace robot {
 
 struct PeopleConfig {
   double max_range = 8.0;         // m; farther away too few beams meet a person
-  double gap = 0.25;              // m between beam ends within which they belong together
+  double gap = 0.3;               // m between the ends of beams within which they belong together: legs in a stride
   double leg_radius = 0.06;       // m; beams meet the near side of the legs
-  double max_width = 0.9;         // m; wider clusters are several people side by side
+  double max_width = 0.6;         // m; wider clusters are several people side by side
   int min_beams = 2;              // a single beam within 3 m is noise
   double gate = 0.6;              // m between a track's prediction and a body
-  double acceleration = 1.5;      // m/s2, one standard deviation of how people change their mind
-  double position_noise = 0.08;   // m, one standard deviation of a body's place
-  Seconds lost_after{1.0};        // a track unseen for so long is dropped
+  double acceleration = 1.0;      // m/s2, one standard deviation of how people change their mind
+  double position_noise = 0.1;    // m, one standard deviation of a body's place: legs swing
+  Seconds lost_after{1.0};        // a track unseen for so long is dropped,
+  Seconds gone_after{0.15};       // or for so long, when beams pass where it should be
+  double same_person = 0.3;       // m; of two tracks nearer than this the younger one is dropped
   std::size_t most_people = 100;  // tracks at a time
-  int confirm_after = 3;          // sightings before a track counts as a person
+  int confirm_after = 4;          // sightings before a track counts as a person
 };
 
 // A body in one scan, map frame.
@@ -53,6 +55,8 @@ class PeopleTracker {
   };
   void predict(Track& track, Time to) const;
   void correct(Track& track, Point measured) const;
+  void match(const std::vector<PersonBody>& bodies, Time time);
+  void drop_gone(const ScanView& scan);
 
   PeopleConfig config_;
   std::vector<Track> tracks_;

@@ -37,7 +37,7 @@ TEST(ObstacleLayers, SomethingThatStaysBecomesAnObstacle) {
   const Cell ahead = layers.map().cell({2.0, 0.0});
   layers.add(scan_with_object(2.0f, 3));
   EXPECT_FALSE(layers.blocked(ahead));  // a single look is no obstacle yet
-  for (int i = 0; i < 10; ++i) layers.add(scan_with_object(2.0f, 3));
+  for (int i = 0; i < 30; ++i) layers.add(scan_with_object(2.0f, 3));
   EXPECT_TRUE(layers.blocked(ahead));
   EXPECT_THAT(layers.take_changes(), ::testing::Contains(ahead));
   EXPECT_THAT(layers.take_changes(), IsEmpty());
@@ -46,7 +46,7 @@ TEST(ObstacleLayers, SomethingThatStaysBecomesAnObstacle) {
 
 TEST(ObstacleLayers, ABeamThatPassesClearsAtOnce) {
   ObstacleLayers layers(open_hall());
-  for (int i = 0; i < 10; ++i) layers.add(scan_with_object(2.0f, 3));
+  for (int i = 0; i < 30; ++i) layers.add(scan_with_object(2.0f, 3));
   ASSERT_THAT(layers.blocked_cells(), Not(IsEmpty()));
   layers.take_changes();
   layers.add(scan_with_object(4.5f, 0));
@@ -56,7 +56,7 @@ TEST(ObstacleLayers, ABeamThatPassesClearsAtOnce) {
 
 TEST(ObstacleLayers, BeamsWithoutReturnClearNothing) {
   ObstacleLayers layers(open_hall());
-  for (int i = 0; i < 10; ++i) layers.add(scan_with_object(2.0f, 3));
+  for (int i = 0; i < 30; ++i) layers.add(scan_with_object(2.0f, 3));
   layers.add(scan_with_object(nan, 90));
   EXPECT_TRUE(layers.blocked(layers.map().cell({2.0, 0.0})));
 }
@@ -64,7 +64,7 @@ TEST(ObstacleLayers, BeamsWithoutReturnClearNothing) {
 TEST(ObstacleLayers, WhatNobodyLooksAtFadesWithTheHalfLife) {
   ObstacleLayers layers(open_hall());
   layers.decay(from_seconds(0));
-  for (int i = 0; i < 20; ++i) layers.add(scan_with_object(2.0f, 3));
+  for (int i = 0; i < 40; ++i) layers.add(scan_with_object(2.0f, 3));
   const Cell ahead = layers.map().cell({2.0, 0.0});
   ASSERT_EQ(layers.laser().evidence(ahead), 100);
   for (int t = 1; t <= 9; ++t) layers.decay(from_seconds(t));
@@ -77,7 +77,7 @@ TEST(ObstacleLayers, WhatNobodyLooksAtFadesWithTheHalfLife) {
 
 TEST(ObstacleLayers, BeamsThatMeetTheMapMarkNothing) {
   ObstacleLayers layers(open_hall());
-  for (int i = 0; i < 20; ++i) layers.add(scan_with_object(4.5f, -1));
+  for (int i = 0; i < 40; ++i) layers.add(scan_with_object(4.5f, -1));
   EXPECT_THAT(layers.laser().active(), IsEmpty());
 }
 
@@ -133,7 +133,7 @@ TEST(ObstacleLayers, SonarsThatDoNotExistAreLeftOut) {
 
 TEST(ObstacleLayers, ForgettingWorksEverywhereOrRoundAPoint) {
   ObstacleLayers layers(open_hall());
-  for (int i = 0; i < 10; ++i) layers.add(scan_with_object(2.0f, 20));
+  for (int i = 0; i < 30; ++i) layers.add(scan_with_object(2.0f, 20));
   const std::size_t all = layers.blocked_cells().size();
   layers.forget_near({2.0, 0.0}, 0.3);
   EXPECT_LT(layers.blocked_cells().size(), all);

@@ -72,7 +72,7 @@ void block(ObstacleLayers& layers, Point place, double radius) {
     scan.kinds.push_back(BeamKind::person);
   }
   scan.map_from_laser = {place.x, place.y, 0.0};
-  for (int i = 0; i < 10; ++i) layers.add(scan);
+  for (int i = 0; i < 20; ++i) layers.add(scan);
 }
 
 TEST(Planner, TakesTheNearDoorAndStaysClearOfWalls) {
