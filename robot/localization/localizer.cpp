@@ -221,13 +221,18 @@ ScanReading Localizer::update(const LaserScan& scan, const Pose& base_from_laser
   bool due = !resting || scan.time - glance.weighed_at >= patience;
   // A scan that does not fit where the robot should be by now is not put off: the wheels may have slipped.
   if (!due) due = !p.tracker.refine(scan, base_from_laser, odom);
+  ScanReading reading;
+  if (!due) {
+    reading = p.tracker.read(scan, p.tracker.pose_at(odom) * base_from_laser);
+    due = p.tracker.surprising(reading);
+  }
   if (due) {
     p.tracker.take_in(scan, base_from_laser, odom, resting ? p.config.rest_temper : 1.0);
     glance.weighed = true;
     glance.weighed_odom = odom;
     glance.weighed_at = scan.time;
+    reading = p.tracker.read(scan, p.tracker.pose_at(odom) * base_from_laser);
   }
-  ScanReading reading = p.tracker.read(scan, p.tracker.pose_at(odom) * base_from_laser);
   reading.weighed = due;
   if (due) p.judge_state(reading);
   return reading;

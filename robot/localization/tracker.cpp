@@ -39,7 +39,7 @@ Tracker::Tracker(const OccupancyGrid& map, const LocalizerConfig& config, Random
 void Tracker::start(std::span<const Seed> seeds) {
   filter_.start(seeds);
   if (odom_now_) forget_motion(*odom_now_);
-  usual_far_ = 0.05;
+  usual_far_ = last_far_ = 0.05;
   summarize();
 }
 
@@ -139,7 +139,9 @@ void Tracker::take_in(const LaserScan& scan, const Pose& base_from_laser, const 
   if (agrees && position_sigma(covariance_) < 0.3) {
     filter_.infuse({pose_, position_sigma(covariance_), heading_sigma(covariance_), 1.0}, config_.match_share);
   }
-  doubt(beams, read(scan, pose_ * base_from_laser));
+  if (!doubt(beams, read(scan, pose_ * base_from_laser))) return;
+  weigh(beams, 1.0);
+  refine(scan, base_from_laser, odom);
 }
 
 ScanReading Tracker::read(const LaserScan& scan, const Pose& map_from_laser) const {
@@ -175,22 +177,32 @@ bool Tracker::refine(const LaserScan& scan, const Pose& base_from_laser, const P
   return true;
 }
 
+bool Tracker::surprising(const ScanReading& reading) const {
+  return count_beams(reading).far_share() >= std::max(usual_far_, last_far_) + config_.doubt_above;
+}
+
 // Augmented MCL (Thrun et al., "Probabilistic Robotics", table 8.3) with a local proposal: when more beams than usual
-// are longer than the map allows, which people cannot cause, some samples are drawn where the scan would fit. They
-// stay if the next scans agree.
-void Tracker::doubt(const Beams& beams, const ScanReading& reading) {
-  const double far = count_beams(reading).far_share();
-  if (position_sigma(best_.covariance) > 0.5 || beams.beams.size() < 10) return;
-  if (far < usual_far_ + config_.doubt_above) {
-    usual_far_ += 0.02 * (far - usual_far_);
-    return;
+// are longer than the map allows, which people cannot cause, some samples are drawn where the scan would fit. Only a
+// place that explains the scan by far better counts: along a corridor with open doors, or on a map that somebody drew,
+// many places explain it a little better than the true one. True then, and the scan is to be weighed once more.
+bool Tracker::doubt(const Beams& beams, const ScanReading& reading) {
+  last_far_ = count_beams(reading).far_share();
+  if (position_sigma(best_.covariance) > 0.5 || beams.beams.size() < 10) return false;
+  if (last_far_ < usual_far_ + config_.doubt_above) {
+    usual_far_ += 0.02 * (last_far_ - usual_far_);
+    return false;
   }
   const Pose nearby = search_nearby(field_, beams.beams, best_.mean, config_.match).pose;
   const Look look{{beams}};
   // The end points alone would look through walls to find a place; the beam model does not.
-  const double gain =
-      judge_place(caster_, field_, look, nearby).score - judge_place(caster_, field_, look, best_.mean).score;
-  if (gain > config_.doubt_gain) filter_.infuse({nearby, 0.05, 0.02, 1.0}, config_.doubt_share);
+  const Peak there = judge_place(caster_, field_, look, nearby);
+  if (there.share < config_.doubt_explains ||
+      there.score < judge_place(caster_, field_, look, best_.mean).score + config_.doubt_gain) {
+    return false;
+  }
+  filter_.infuse({nearby, 0.05, 0.02, 1.0}, config_.doubt_share);
+  last_far_ = usual_far_;
+  return true;
 }
 
 void Tracker::learn_offset(const ScanMatch& match) {

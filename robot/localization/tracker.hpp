@@ -41,6 +41,8 @@ class Tracker {
   void set_sure(bool sure) { sure_ = sure; }
   // The scan's beams, read at a pose that is known as well as the estimate.
   ScanReading read(const LaserScan& scan, const Pose& map_from_laser) const;
+  // Whether clearly more of its beams are longer than the map allows than usual, and than of the last scan taken in.
+  bool surprising(const ScanReading& reading) const;
 
   bool has_odometry() const { return odom_now_.has_value(); }
   Pose odometry() const { return odom_now_.value_or(Pose{}); }
@@ -62,7 +64,7 @@ class Tracker {
   Beams comb(const LaserScan& scan, const Pose& base_from_laser) const;
   std::vector<Point> trusted_ends(const Beams& beams);
   void weigh(const Beams& beams, double temper);
-  void doubt(const Beams& beams, const ScanReading& reading);
+  bool doubt(const Beams& beams, const ScanReading& reading);
   void learn_offset(const ScanMatch& match);
 
   LocalizerConfig config_;
@@ -81,6 +83,7 @@ class Tracker {
   Eigen::Matrix3d predicted_covariance_ = Eigen::Matrix3d::Zero();  // of its belief before the last scan was weighed
   int modes_ = 0;
   double usual_far_ = 0.05;  // share of impossible beams, slow average
+  double last_far_ = 0.05;   // the same of the last scan
 
   Pose pose_;       // the estimate ...
   Pose pose_odom_;  // ... and the odometry it belongs to
