@@ -126,6 +126,19 @@ TEST_F(Lines, OnWhichNothingComesWholeStopTheRobotUntilTheyAreMended) {
   EXPECT_EQ(server_.stop(), 0);
 }
 
+TEST_F(Lines, WithNowAndThenABadPacketDoNotKeepTheRobotFromItsGoal) {
+  for (const std::string kind : {"cut", "flip", "random"}) {
+    set_out();
+    for (const std::string& device : devices)
+      ASSERT_EQ(devices_.order("damage " + device + " " + kind + " 0.05"), "done");
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    for (const std::string& device : devices) ASSERT_EQ(devices_.order("mend " + device), "done");
+    EXPECT_TRUE(arrives()) << kind << ": " << status().dump() << server_.log();
+  }
+  for (const std::string& device : devices) EXPECT_GT(health(device)["bad_packets"].get<int>(), 0) << device;
+  EXPECT_EQ(server_.stop(), 0);
+}
+
 // From a front scan's first byte at its terminal to the bytes of the next wheel command at the base's, through two real
 // processes. Measured and printed; not asserted.
 TEST_F(Lines, CarryAWheelCommandSoonAfterAScan) {
