@@ -112,6 +112,7 @@ enum class Why : std::uint8_t {
   lost,
   hazard_near,
   motors_off,
+  recording,  // what is seen was recorded; nothing can be asked for
 };
 
 // What the robot does and why, with the facts that a sentence needs. Words are made of it per language.
@@ -176,6 +177,7 @@ enum class Refusal : std::uint8_t {
   not_yours,
   already_over,
   nothing_to_answer,
+  recording,  // this robot only repeats what was recorded
 };
 // The answer to anything that carried a ticket.
 struct Answer {

@@ -1,11 +1,11 @@
 // docent: the command line. Wires, nothing else.
 #include <CLI/CLI.hpp>
 
+#include "server/replay_show.hpp"
 #include "server/serve.hpp"
 #include "server/tools/check_tool.hpp"
 #include "server/tools/devices_tool.hpp"
 #include "server/tools/map_tool.hpp"
-#include "server/tools/replay_tool.hpp"
 #include "server/tools/simulate_tool.hpp"
 
 int main(int argc, char** argv) {
@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   app.fallthrough();
   server::add_serve_command(app);
   tools::add_simulate_command(app);
-  tools::add_replay_command(app);
+  server::add_replay_command(app);
   tools::add_map_command(app);
   tools::add_devices_command(app);
   tools::add_check_command(app);

@@ -25,7 +25,8 @@ class Runner {
 
   Runner(net::io_context& io, robot::Robot robot, Sinks sinks, Clock::time_point zero);
 
-  // Starts the control tick, 20 Hz on the wall; a tick that comes late is not made up for.
+  // Starts the control tick, 20 Hz or a little more on the wall: right after a front scan, so that steering never waits
+  // for a clock with what the laser saw, or on its own when no scan comes. A tick that comes late is not made up for.
   void start();
   void stop();
 
@@ -38,13 +39,15 @@ class Runner {
 
  private:
   void tick();
+  void wait_for_tick();
 
   net::io_context& io_;
   robot::Robot robot_;
   Sinks sinks_;
   Clock::time_point zero_;
   net::steady_timer timer_;
-  Clock::time_point due_;
+  Clock::time_point ticked_;
+  bool running_ = false;
 };
 
 }  // namespace server

@@ -52,6 +52,7 @@ void Wires::listen(const robot::Event& event) {
 std::vector<DeviceHealth> Wires::health() {
   const auto now = Clock::now();
   const double seconds = std::chrono::duration<double>(now - std::exchange(counted_since_, now)).count();
+  const devices::LineStatistics lines[] = {base_.statistics(), front_.statistics(), rear_.statistics()};
   std::vector<DeviceHealth> all;
   for (std::size_t i = 0; i < heard_.size(); ++i) {
     Heard& heard = heard_[i];
@@ -62,7 +63,8 @@ std::vector<DeviceHealth> Wires::health() {
                    .connected = heard.connected,
                    .reason = heard.reason,
                    .age_seconds = age,
-                   .rate_hz = seconds > 0.0 ? reports / seconds : 0.0});
+                   .rate_hz = seconds > 0.0 ? reports / seconds : 0.0,
+                   .bad_packets = lines[i].bad_checksums});
   }
   return all;
 }

@@ -65,7 +65,7 @@ void Recorder::output(robot::Time now, const robot::Output& output) {
   writer_.write(outputs_, stamp(now), to_cbor(output));
 }
 
-RecordingReader::RecordingReader(std::istream& in, std::string name) : reader_(in, name) {
+RecordingReader::RecordingReader(std::istream& in, const std::string& name) : reader_(in, name) {
   first_ = reader_.next();
   const auto found = reader_.metadata().find(metadata_name);
   if (found == reader_.metadata().end()) {

@@ -60,7 +60,7 @@ using RecordedEntry = std::variant<robot::Input, RecordedOutput>;
 class RecordingReader {
  public:
   // Throws FileError when it is no recording.
-  RecordingReader(std::istream& in, std::string name);
+  RecordingReader(std::istream& in, const std::string& name);
 
   const RecordingInfo& info() const { return info_; }
   // The next entry, or nothing at the end. An entry that cannot be decoded is left out and counted.

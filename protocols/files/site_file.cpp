@@ -182,7 +182,7 @@ class SiteReader {
   }
 
   std::string read_picture(const toml::table& table) {
-    const std::string name = read_.string(table, "picture", "");
+    std::string name = read_.string(table, "picture", "");  // not const: it is moved out
     if (name.empty()) return name;
     const std::filesystem::path path(name);
     const bool inside = path.is_relative() && std::find(path.begin(), path.end(), "..") == path.end();

@@ -62,7 +62,8 @@ double TomlReader::number(const toml::table& table, std::string_view key, Range 
   return otherwise.value_or(0.0);
 }
 
-std::string TomlReader::string(const toml::table& table, std::string_view key, std::optional<std::string> otherwise) {
+std::string TomlReader::string(const toml::table& table, std::string_view key,
+                               const std::optional<std::string>& otherwise) {
   const toml::node* node = otherwise ? table.get(key) : need(table, key, "a text in quotes");
   if (!node) return otherwise.value_or("");
   if (auto value = node->value<std::string>(); value && value->size() <= max_text) return *value;

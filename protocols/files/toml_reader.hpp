@@ -33,7 +33,7 @@ class TomlReader {
   // Values; without `otherwise` the key must be there. A value that is missing or unusable is reported and comes back
   // as `otherwise`, or as a zero or an empty one.
   double number(const toml::table& table, std::string_view key, Range range, std::optional<double> otherwise = {});
-  std::string string(const toml::table& table, std::string_view key, std::optional<std::string> otherwise = {});
+  std::string string(const toml::table& table, std::string_view key, const std::optional<std::string>& otherwise = {});
   robot::Text text(const toml::table& table, std::string_view key, bool needed = true);
   robot::Point point(const toml::table& table, std::string_view key);
   robot::Polygon polygon(const toml::table& table, std::string_view key);

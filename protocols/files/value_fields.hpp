@@ -29,11 +29,11 @@ inline constexpr auto last_of<robot::BeamKind> = robot::BeamKind::unexpected_far
 template <>
 inline constexpr auto last_of<robot::Activity> = robot::Activity::faulted;
 template <>
-inline constexpr auto last_of<robot::Why> = robot::Why::motors_off;
+inline constexpr auto last_of<robot::Why> = robot::Why::recording;
 template <>
 inline constexpr auto last_of<robot::RequestState> = robot::RequestState::failed;
 template <>
-inline constexpr auto last_of<robot::Refusal> = robot::Refusal::nothing_to_answer;
+inline constexpr auto last_of<robot::Refusal> = robot::Refusal::recording;
 template <>
 inline constexpr auto last_of<robot::Cue> = robot::Cue::farewell;
 template <>

@@ -24,7 +24,8 @@ constexpr std::array activities{"starting", "localizing", "idle",   "homing",  "
                                 "waiting",  "explaining", "asking", "stopped", "faulted"};
 constexpr std::array whys{"none",        "requested",      "tour",         "nothing_to_do", "people_in_the_way",
                           "way_blocked", "crowded_slow",   "pressed_stop", "laser_silent",  "base_silent",
-                          "bumped",      "emergency_stop", "lost",         "hazard_near",   "motors_off"};
+                          "bumped",      "emergency_stop", "lost",         "hazard_near",   "motors_off",
+                          "recording"};
 constexpr std::array modes{"open", "web_only", "staff"};
 constexpr std::array channels{"web", "kiosk", "console", "program"};
 constexpr std::array states{"pending", "active", "fulfilled", "cancelled", "failed"};

@@ -92,6 +92,8 @@ Problem problem_of(robot::Refusal refusal) {
       return {409, "already_over", "That request has already ended.", ""};
     case nothing_to_answer:
       return {409, "nothing_to_answer", "The robot is not asking anything at the moment.", ""};
+    case recording:
+      return {409, "recording", "This robot repeats a recorded drive; it cannot be sent anywhere.", ""};
     case none:
       break;
   }

@@ -92,6 +92,10 @@ Text spoken_duration(double seconds) {
 }
 
 Text status_sentence(const Status& status, const Museum& museum) {
+  if (status.why == Why::recording) {
+    return both("You are watching a drive that was recorded earlier.",
+                "Du siehst eine Fahrt, die früher aufgezeichnet wurde.");
+  }
   switch (status.activity) {
     case Activity::starting:
       return both("I am waking up and listen to my sensors.", "Ich wache auf und horche auf meine Sensoren.");
@@ -124,6 +128,10 @@ Text status_sentence(const Status& status, const Museum& museum) {
 }
 
 Text status_detail(const Status& status, const Museum& museum) {
+  if (status.why == Why::recording) {
+    return both("The plan shows where the robot believes to be, and what its laser saw.",
+                "Der Plan zeigt, wo der Roboter zu sein glaubt und was sein Laser sah.");
+  }
   std::string en, de;
   const auto add = [&](const std::string& more_en, const std::string& more_de) {
     en += (en.empty() ? "" : " ") + more_en;

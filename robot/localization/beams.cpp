@@ -5,7 +5,7 @@ namespace robot {
 Beams beams_of(const LaserScan& scan, const Pose& base_from_laser, int first, int stride) {
   Beams result{base_from_laser.position(), {}};
   const int count = static_cast<int>(scan.ranges.size());
-  result.beams.reserve(static_cast<std::size_t>(count / stride + 1));
+  result.beams.reserve(static_cast<std::size_t>(count / stride) + 1);
   for (int i = first; i < count; i += stride) {
     const float range = scan.ranges[static_cast<std::size_t>(i)];
     if (!is_return(range, scan.max_range)) continue;

@@ -26,6 +26,7 @@ template <typename T>
 std::vector<T> thinned(const std::vector<T>& all, int at_most) {
   if (static_cast<int>(all.size()) <= at_most) return all;
   std::vector<T> some;
+  some.reserve(static_cast<std::size_t>(at_most));
   for (int i = 0; i < at_most; ++i)
     some.push_back(all[all.size() * static_cast<std::size_t>(i) / static_cast<std::size_t>(at_most)]);
   return some;
@@ -229,9 +230,10 @@ void GlobalSearch::pick_candidates() {
 void GlobalSearch::align(const Pose& start) {
   std::vector<double> x, y, theta;
   for (int i = 0; i < 7 * 7 * 7; ++i) {
-    x.push_back(start.x + 0.1 * (i % 7 - 3));
-    y.push_back(start.y + 0.1 * (i / 7 % 7 - 3));
-    theta.push_back(start.theta + 0.7 * config_.heading * (i / 49 - 3));
+    const int column = i % 7 - 3, row = i / 7 % 7 - 3, turn = i / 49 - 3;
+    x.push_back(start.x + 0.1 * column);
+    y.push_back(start.y + 0.1 * row);
+    theta.push_back(start.theta + 0.7 * config_.heading * turn);
   }
   std::vector<float> fit(x.size());
   field_.weigh(x, y, theta, ends_, fit);

@@ -122,7 +122,8 @@ Web::Parts::Json Web::Parts::health() const {
                      {"connected", device.connected},
                      {"reason", device.reason},
                      {"age_seconds", protocols::web::number(device.age_seconds, 2)},
-                     {"rate_hz", protocols::web::number(device.rate_hz, 1)}});
+                     {"rate_hz", protocols::web::number(device.rate_hz, 1)},
+                     {"bad_packets", device.bad_packets}});
   }
   return {{"devices", lines},
           {"localization", view->localization_json()},

@@ -50,9 +50,10 @@ struct WebOptions {
 struct DeviceHealth {
   std::string device;  // "base", "laser_front"...
   bool connected = false;
-  std::string reason;        // why not
-  double age_seconds = 0.0;  // since it was last heard
-  double rate_hz = 0.0;      // of its reports
+  std::string reason;             // why not
+  double age_seconds = 0.0;       // since it was last heard
+  double rate_hz = 0.0;           // of its reports
+  std::uint64_t bad_packets = 0;  // came damaged, since the start
 };
 
 class Web {

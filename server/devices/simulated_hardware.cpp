@@ -145,6 +145,12 @@ void SimulatedHardware::plug(Device device) {
   });
 }
 
+void SimulatedHardware::damage(Device device, SimulatedLine::Damage kind, double share) {
+  asio::post(state_->executor, [state = state_, device, kind, share] {
+    if (auto* line = state->line(device)) line->damage(kind, share);
+  });
+}
+
 void SimulatedHardware::with_world(std::function<void(World&)> act) {
   asio::post(state_->executor, [state = state_, act = std::move(act)] { act(state->present()); });
 }

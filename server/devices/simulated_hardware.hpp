@@ -34,6 +34,7 @@ class SimulatedHardware {
   // From any thread: carried out on the executor.
   void unplug(robot::Device device);
   void plug(robot::Device device);
+  void damage(robot::Device device, SimulatedLine::Damage kind, double share);
   // With the world at the present moment: to speak to its visitors, take a snapshot, press a button, know the truth.
   void with_world(std::function<void(robot::simulation::World&)> act);
   // Asks for the milliseconds from scan bytes to wheel command bytes; answers on the executor.

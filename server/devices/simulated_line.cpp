@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <random>
 #include <utility>
 
 #include <boost/asio/posix/stream_descriptor.hpp>
@@ -60,7 +61,7 @@ struct SimulatedLine::State : std::enable_shared_from_this<State> {
     const Instant now = std::chrono::steady_clock::now();
     if (tap.received) tap.received(bytes, now);
     const int rate = device->baud();
-    if (pty->baud() == rate) device->receive(bytes, now);
+    if (pty->baud() == rate) device->receive(damaged(Bytes(bytes.begin(), bytes.end())), now);
     send(rate, now);
     wait_until_due();
   }
@@ -87,7 +88,18 @@ struct SimulatedLine::State : std::enable_shared_from_this<State> {
     const Bytes bytes = device->take_output();
     if (bytes.empty() || !pty || pty->unread() > deaf_client) return;
     if (tap.sent) tap.sent(bytes, now);
-    pty->write(pty->baud() == rate ? bytes : garbled(bytes));
+    pty->write(damaged(pty->baud() == rate ? bytes : garbled(bytes)));
+  }
+
+  Bytes damaged(Bytes bytes) {
+    if (damage == Damage::none || bytes.empty() || dice() >= share * static_cast<double>(dice.max())) return bytes;
+    const std::size_t at = dice() % bytes.size();
+    if (damage == Damage::cut) bytes.resize(at);
+    if (damage == Damage::flip) bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ (1u << dice() % 8));
+    if (damage == Damage::random) {
+      for (std::size_t i = 0; i < 1 + at % 40; ++i) bytes.push_back(static_cast<std::uint8_t>(dice()));
+    }
+    return bytes;
   }
 
   std::shared_ptr<SimulatedDevice> device;
@@ -99,6 +111,9 @@ struct SimulatedLine::State : std::enable_shared_from_this<State> {
   bool over = false;          // the line's owner is gone
   std::uint64_t plugged = 0;  // times; what an older terminal still says is not heard
   Tap tap;
+  Damage damage = Damage::none;
+  double share = 0.0;
+  std::minstd_rand dice{1};
 };
 
 SimulatedLine::SimulatedLine(asio::any_io_executor executor, std::shared_ptr<SimulatedDevice> device,
@@ -134,6 +149,11 @@ void SimulatedLine::plug() {
 
 void SimulatedLine::inject(ByteSpan bytes) {
   if (state_->pty) state_->pty->write(bytes);
+}
+
+void SimulatedLine::damage(Damage kind, double share) {
+  state_->damage = kind;
+  state_->share = share;
 }
 
 void SimulatedLine::tap(Tap tap) { state_->tap = std::move(tap); }

@@ -26,6 +26,10 @@ class SimulatedLine {
   void plug();
   // Noise on the line: bytes that no device sent.
   void inject(serial::ByteSpan bytes);
+  // A bad cable, both ways: this share (0..1) of what is sent loses its end, has a bit turned over, or is followed by
+  // bytes that nobody sent. The same every time, in the order of what is sent.
+  enum class Damage { none, cut, flip, random };
+  void damage(Damage kind, double share);
   // From now on called with everything that is sent to the client, and with all that comes from it, at once.
   struct Tap {
     std::function<void(serial::ByteSpan, Instant)> sent{}, received{};

@@ -13,7 +13,8 @@ struct DevicesOptions {
   std::filesystem::path site = "static/sites/rhine-hall";
   int visitors = 20;
   std::uint64_t seed = 1;
-  bool list = false;  // say the terminals as JSON
+  bool list = false;    // say the terminals as JSON
+  bool orders = false;  // unplug, damage and the like, told on standard input
 };
 
 // Says where the terminals are and runs the museum in real time until SIGINT or SIGTERM. Returns the exit code.

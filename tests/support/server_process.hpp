@@ -22,19 +22,12 @@ namespace testing_support {
 class ServerProcess {
  public:
   // `more`: further options, as "--visitors=5". `folder` outlives the process: give the same one again to restart.
-  explicit ServerProcess(const TemporaryFolder& folder, std::vector<std::string> more = {}) {
-    const char* program = std::getenv("DOCENT");
-    if (!program) throw std::runtime_error("DOCENT does not name the program");
-    log_ = (folder.path() / "server.log").string();
-    std::filesystem::remove(log_);  // an earlier process's port must not be read
-    std::vector<std::string> words{program,        "serve",
-                                   "--port=0",     "--bind=127.0.0.1",
-                                   "--start=home", "--database=" + (folder.path() / "docent.sqlite").string()};
-    words.insert(words.end(), more.begin(), more.end());
-    child_ = fork();
-    if (child_ < 0) throw std::runtime_error("fork failed");
-    if (child_ == 0) begin(words);
-    wait_for_port();
+  explicit ServerProcess(const TemporaryFolder& folder, const std::vector<std::string>& more = {})
+      : ServerProcess(folder, {"serve", "--start=home", "--database=" + (folder.path() / "docent.sqlite").string()},
+                      more) {}
+  // Another of docent's commands that serves.
+  static ServerProcess running(const TemporaryFolder& folder, const std::vector<std::string>& command) {
+    return {folder, command, {}};
   }
   ~ServerProcess() {
     if (child_ > 0) stop();
@@ -69,6 +62,22 @@ class ServerProcess {
   }
 
  private:
+  ServerProcess(const TemporaryFolder& folder, const std::vector<std::string>& command,
+                const std::vector<std::string>& more) {
+    const char* program = std::getenv("DOCENT");
+    if (!program) throw std::runtime_error("DOCENT does not name the program");
+    log_ = (folder.path() / "server.log").string();
+    std::filesystem::remove(log_);  // an earlier process's port must not be read
+    std::vector<std::string> words{program};
+    words.insert(words.end(), command.begin(), command.end());
+    words.insert(words.end(), {"--port=0", "--bind=127.0.0.1"});
+    words.insert(words.end(), more.begin(), more.end());
+    child_ = fork();
+    if (child_ < 0) throw std::runtime_error("fork failed");
+    if (child_ == 0) begin(words);
+    wait_for_port();
+  }
+
   [[noreturn]] void begin(const std::vector<std::string>& words) {
     const int out = open(log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     dup2(out, STDOUT_FILENO);

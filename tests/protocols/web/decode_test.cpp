@@ -92,6 +92,7 @@ TEST(EnumNames, StandInTheOrderOfTheirEnumerators) {
   EXPECT_STREQ(name_of(robot::Activity::faulted), "faulted");
   EXPECT_STREQ(name_of(robot::Activity::explaining), "explaining");
   EXPECT_STREQ(name_of(robot::Why::motors_off), "motors_off");
+  EXPECT_STREQ(name_of(robot::Why::recording), "recording");
   EXPECT_STREQ(name_of(robot::Why::bumped), "bumped");
   EXPECT_STREQ(name_of(robot::Why::people_in_the_way), "people_in_the_way");
   EXPECT_STREQ(name_of(robot::RequestState::failed), "failed");

@@ -171,7 +171,7 @@ TEST(Problems, AreAsRfc9457SaysThem) {
   EXPECT_EQ(json["status"], 422);
   EXPECT_EQ(json["code"], "inside_obstacle");
   EXPECT_EQ(json["title"], "Unprocessable Content");
-  for (int i = 1; i <= static_cast<int>(robot::Refusal::nothing_to_answer); ++i) {
+  for (int i = 1; i <= static_cast<int>(robot::Refusal::recording); ++i) {
     const Problem problem = problem_of(static_cast<robot::Refusal>(i));
     EXPECT_NE(problem.code, "internal") << i;
     EXPECT_STRNE(status_title(problem.status), "Internal Server Error") << i;

@@ -60,7 +60,7 @@ TEST(Words, TellTheTourAndItsStop) {
 
 TEST(Words, EveryActivityHasASentenceInBothLanguages) {
   for (int activity = 0; activity <= static_cast<int>(Activity::faulted); ++activity) {
-    for (int why = 0; why <= static_cast<int>(Why::motors_off); ++why) {
+    for (int why = 0; why <= static_cast<int>(Why::recording); ++why) {
       Status status;
       status.activity = static_cast<Activity>(activity);
       status.why = static_cast<Why>(why);

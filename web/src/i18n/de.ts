@@ -128,6 +128,7 @@ export const de: Words = {
     unreachable: "Da komme ich nicht hin. Ein anderes Ziel?",
     unknown_exhibit: "Dieses Exponat kenne ich nicht.",
     nothing_to_answer: "Ich bin schon weitergefahren.",
+    recording: "Das ist eine Aufzeichnung. Ich kann nirgends sonst hin.",
   },
   problem: (code) => `Das ging nicht (${code}). Versuch es gleich noch einmal.`,
 

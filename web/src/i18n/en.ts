@@ -127,6 +127,7 @@ export const en = {
     unreachable: "I cannot get there. Choose another place?",
     unknown_exhibit: "I do not know this exhibit.",
     nothing_to_answer: "I have already moved on.",
+    recording: "This is a recording. I cannot go anywhere else.",
   } as Record<string, string>,
   problem: (code: string) => `That did not work (${code}). Try again in a moment.`,
 
