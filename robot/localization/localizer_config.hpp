@@ -29,6 +29,7 @@ struct LocalizerConfig {
   int filter_samples = 16;           // of the belief, that the distance filter asks
   double match_share = 0.05;         // of the samples, drawn anew round each accepted scan match
   double doubt_above = 0.1;          // share of impossible beams over the usual: worth a look round the belief
+  double doubt_blind = 0.15;         // m: or the belief had spread as far as this before the scan
   double doubt_gain = 20.0;          // nats of the beam model that a place found there must be better ...
   double doubt_explains = 0.5;       // ... and share of the beams that it must explain
   double doubt_share = 0.2;          // of the samples, drawn at a better place found there

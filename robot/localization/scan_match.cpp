@@ -83,7 +83,7 @@ ScanMatch search_nearby(const LikelihoodField& field, std::span<const Beam> beam
     }
   }
   std::vector<Point> ends;
-  for (const Beam& beam : beams) ends.push_back(beam.end);
+  for (std::size_t i = 0; i < beams.size(); i += 2) ends.push_back(beams[i].end);
   std::vector<float> fit(x.size());
   field.weigh(x, y, theta, ends, fit);
   const auto best = static_cast<std::size_t>(std::max_element(fit.begin(), fit.end()) - fit.begin());

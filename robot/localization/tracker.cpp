@@ -182,24 +182,24 @@ bool Tracker::surprising(const ScanReading& reading) const {
 }
 
 // Augmented MCL (Thrun et al., "Probabilistic Robotics", table 8.3) with a local proposal: when more beams than usual
-// are longer than the map allows, which people cannot cause, some samples are drawn where the scan would fit. Only a
-// place that explains the scan by far better counts: along a corridor with open doors, or on a map that somebody drew,
-// many places explain it a little better than the true one. True then, and the scan is to be weighed once more.
+// are longer than the map allows, which people cannot cause, or the belief had spread on a blind stretch, some samples
+// are drawn where the scan would fit. Only a place that explains the scan by far better counts: along a corridor with
+// open doors, or on a map that somebody drew, many places explain it a little better than the true one. True then, and
+// the scan is to be weighed once more.
 bool Tracker::doubt(const Beams& beams, const ScanReading& reading) {
   last_far_ = count_beams(reading).far_share();
   if (position_sigma(best_.covariance) > 0.5 || beams.beams.size() < 10) return false;
-  if (last_far_ < usual_far_ + config_.doubt_above) {
-    usual_far_ += 0.02 * (last_far_ - usual_far_);
-    return false;
-  }
-  const Pose nearby = search_nearby(field_, beams.beams, best_.mean, config_.match).pose;
+  const bool contradicted = last_far_ >= usual_far_ + config_.doubt_above;
+  if (!contradicted) usual_far_ += 0.02 * (last_far_ - usual_far_);
+  const bool vague = position_sigma(predicted_covariance_) > config_.doubt_blind;
+  if (!contradicted && !vague) return false;
   const Look look{{beams}};
   // The end points alone would look through walls to find a place; the beam model does not.
+  const Peak here = judge_place(caster_, field_, look, best_.mean);
+  if (here.share >= config_.doubt_explains) return false;
+  const Pose nearby = search_nearby(field_, beams.beams, best_.mean, config_.match).pose;
   const Peak there = judge_place(caster_, field_, look, nearby);
-  if (there.share < config_.doubt_explains ||
-      there.score < judge_place(caster_, field_, look, best_.mean).score + config_.doubt_gain) {
-    return false;
-  }
+  if (there.share < config_.doubt_explains || there.score < here.score + config_.doubt_gain) return false;
   filter_.infuse({nearby, 0.05, 0.02, 1.0}, config_.doubt_share);
   last_far_ = usual_far_;
   return true;
