@@ -35,6 +35,11 @@ std::chrono::duration<double> scan_period(sick::Variant variant, int baud) {
   return std::max(std::chrono::duration<double>(mirror), transmission_time(2 * variant.values() + 10, baud));
 }
 
+// A telegram of scans may have to end first.
+Duration acknowledges_within(int baud) {
+  return 150ms + std::chrono::duration_cast<Duration>(transmission_time(800, baud));
+}
+
 robot::Device device_of(robot::LaserId laser) {
   return laser == robot::LaserId::front ? robot::Device::laser_front : robot::Device::laser_rear;
 }
@@ -110,8 +115,8 @@ class SickLink::Session : public std::enable_shared_from_this<Session> {
       if (stopping_ || !line_.set_baud(rate).empty()) continue;
       // Twice: the first probe may meet a line full of scans, or the rest of someone else's telegram.
       for (int attempt = 0; attempt < 2; ++attempt) {
-        const auto patience = 150ms + std::chrono::duration_cast<Duration>(transmission_time(800, rate));
-        const auto answer = co_await request(sick::set_mode(sick::mode::on_request), sick::response::mode, patience);
+        const auto answer =
+            co_await request(sick::set_mode(sick::mode::on_request), sick::response::mode, acknowledges_within(rate));
         if (answer.state == Answer::broken) co_return line_.error();
         if (answer.state == Answer::answered) {
           wanted_baud_ = wanted;
@@ -126,13 +131,14 @@ class SickLink::Session : public std::enable_shared_from_this<Session> {
     const auto change = sick::set_baud(wanted_baud_);
     const int old = line_.baud();
     if (change && wanted_baud_ != old) {
-      const auto answer = co_await request(*change, sick::response::mode, 1s);
+      auto answer = co_await request(*change, sick::response::mode, 1s);
+      if (answer.state == Answer::refused) answer = co_await request(*change, sick::response::mode, 1s);
       if (answer.state == Answer::broken) co_return line_.error();
       const bool accepted = answer.state == Answer::answered && !answer.data.empty() && answer.data[0] == 0;
-      if (accepted) {
+      if (accepted || answer.state == Answer::silent) {  // the scanner may have changed although its answer was lost
         line_.set_baud(wanted_baud_);
         co_await line_.sleep(rate_change_settles);
-        const auto check = co_await request(sick::set_mode(sick::mode::on_request), sick::response::mode, 500ms);
+        const auto check = co_await insist(sick::set_mode(sick::mode::on_request), sick::response::mode, 500ms);
         if (check.state != Answer::answered)
           co_return "the laser was lost when changing to " + std::to_string(wanted_baud_) + " baud";
       }
@@ -143,11 +149,11 @@ class SickLink::Session : public std::enable_shared_from_this<Session> {
 
   // Type, configuration and variant. A scanner that refuses 32 m in millimetres is used as it is.
   awaitable<Trouble> set_up() {
-    const auto type = co_await request(sick::ask(sick::command::type), sick::response::type, 1s);
+    const auto type = co_await insist(sick::ask(sick::command::type), sick::response::type, 1s);
     if (type.state == Answer::broken) co_return line_.error();
     statistics_.identity.assign(type.data.begin(), type.data.end());
 
-    const auto block = co_await request(sick::ask(sick::command::get_config), sick::response::config, 1s);
+    const auto block = co_await insist(sick::ask(sick::command::get_config), sick::response::config, 1s);
     const auto config = sick::parse_config(block.data);
     if (!config) co_return "the laser does not tell its configuration";
     sick::Config wanted = *config;
@@ -155,14 +161,13 @@ class SickLink::Session : public std::enable_shared_from_this<Session> {
       wanted.measuring_mode() = sick::measuring::range_32m;
       wanted.set_units(sick::Units::mm);
     }
-    geometry_.measuring_mode = config->measuring_mode();
     // Only when it differs: the block lives in an EEPROM that wears out.
-    if (wanted != *config) {
-      const auto in_force = co_await write_config(wanted);
-      if (in_force) geometry_.measuring_mode = in_force->measuring_mode();
-      if (!in_force || *in_force != wanted) spdlog::warn("{}: the laser keeps its measuring mode", config_.path);
-    }
-    const auto variant = co_await request(sick::set_variant(config_.variant), sick::response::variant, 2s);
+    std::optional<sick::Config> in_force = config;
+    for (int times = 0; times < 3 && in_force && *in_force != wanted; ++times) in_force = co_await write_config(wanted);
+    if (!in_force) co_return "the laser does not tell its configuration";
+    if (*in_force != wanted) spdlog::warn("{}: the laser keeps its measuring mode", config_.path);
+    geometry_.measuring_mode = in_force->measuring_mode();
+    const auto variant = co_await insist(sick::set_variant(config_.variant), sick::response::variant, 2s);
     const auto reply = sick::parse_variant_reply(variant.data);
     if (!reply) co_return "the laser does not answer which angles it scans";
     geometry_.variant = reply->variant;
@@ -173,19 +178,18 @@ class SickLink::Session : public std::enable_shared_from_this<Session> {
     co_return Trouble();
   }
 
+  // The configuration in force afterwards, as the scanner tells it when asked: an answer to the writing may be lost.
   awaitable<std::optional<sick::Config>> write_config(const sick::Config& wanted) {
-    const auto install = co_await request(sick::install_mode(), sick::response::mode, 3s);
-    std::optional<sick::Config> in_force;
-    if (install.state == Answer::answered && !install.data.empty() && install.data[0] == 0) {
-      const auto answer = co_await request(sick::set_config(wanted), sick::response::config_set, 15s);
-      if (!answer.data.empty()) in_force = sick::parse_config(ByteSpan(answer.data).subspan(1));
-    }
-    co_await request(sick::set_mode(sick::mode::on_request), sick::response::mode, 3s);
-    co_return in_force;
+    const auto install = co_await insist(sick::install_mode(), sick::response::mode, 3s);
+    if (install.state == Answer::answered && !install.data.empty() && install.data[0] == 0)
+      co_await request(sick::set_config(wanted), sick::response::config_set, 15s, acknowledges_within(line_.baud()));
+    co_await insist(sick::set_mode(sick::mode::on_request), sick::response::mode, 3s);
+    const auto block = co_await insist(sick::ask(sick::command::get_config), sick::response::config, 1s);
+    co_return sick::parse_config(block.data);
   }
 
   awaitable<Trouble> start_stream() {
-    const auto answer = co_await request(sick::set_mode(sick::mode::stream), sick::response::mode, 3s);
+    const auto answer = co_await insist(sick::set_mode(sick::mode::stream), sick::response::mode, 3s);
     if (answer.state == Answer::broken) co_return line_.error();
     const bool accepted = answer.state == Answer::answered && !answer.data.empty() && answer.data[0] == 0;
     co_return accepted ? Trouble() : "the laser refuses to stream";
@@ -237,18 +241,23 @@ class SickLink::Session : public std::enable_shared_from_this<Session> {
     if (!stopping_) sink_(std::move(*scan));
   }
 
-  // Sends a telegram and waits for its answer; scans that are still in the pipe are let go by.
-  awaitable<Answer> request(Bytes telegram, std::uint8_t id, Duration patience) {
+  // Sends a telegram and waits for its answer; scans that are still in the pipe are let go by. The scanner acknowledges
+  // at once what it understood: without that in `heard_within` there is nothing to wait for.
+  awaitable<Answer> request(Bytes telegram, std::uint8_t id, Duration patience,
+                            Duration heard_within = Duration::max()) {
     Answer answer;
-    const auto deadline = std::chrono::steady_clock::now() + patience;
+    const auto sent_at = std::chrono::steady_clock::now();
+    bool heard = false;
     const bool sent = line_.baud() > 38400 ? co_await line_.write_slowly(telegram, byte_gap) : line_.write(telegram);
     if (!sent) answer.state = Answer::broken;
     while (sent && !stopping_) {
       while (const auto item = decoder_.next()) {
+        if (item->kind == sick::Item::acknowledged) heard = true;
         if (item->kind == sick::Item::refused) answer.state = Answer::refused;
         if (item->kind == sick::Item::telegram && take_answer(item->payload, id, answer)) co_return answer;
       }
-      const auto left = deadline - std::chrono::steady_clock::now();
+      const auto left =
+          (heard ? patience : std::min(patience, heard_within)) - (std::chrono::steady_clock::now() - sent_at);
       if (left <= Duration::zero()) break;
       const auto read = co_await line_.read(std::min<Duration>(left, frame_gap));
       if (read.state == SerialLine::ReadState::broken) {
@@ -258,6 +267,18 @@ class SickLink::Session : public std::enable_shared_from_this<Session> {
       if (read.state == SerialLine::ReadState::timed_out) decoder_.line_fell_silent();
       decoder_.feed(read.bytes);
       if (answer.state == Answer::refused && read.state == SerialLine::ReadState::timed_out) break;
+    }
+    co_return answer;
+  }
+
+  // Says it again when no answer comes or it was not understood, for what may be said twice: one damaged telegram must
+  // not begin the whole set-up anew.
+  awaitable<Answer> insist(Bytes telegram, std::uint8_t id, Duration patience) {
+    const auto heard_within = acknowledges_within(line_.baud());
+    Answer answer;
+    for (int times = 0; times < 6 && !stopping_; ++times) {
+      answer = co_await request(telegram, id, patience, heard_within);
+      if (answer.state == Answer::answered || answer.state == Answer::broken) break;
     }
     co_return answer;
   }

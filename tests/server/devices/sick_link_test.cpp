@@ -52,6 +52,16 @@ TEST(SickLink, HalfDegreesAreTwiceAsMany) {
   EXPECT_EQ(bench.all<LaserScan>().back().ranges.size(), 361u);
 }
 
+TEST(SickLink, SetsUpOverALineThatDamagesMuchOfWhatIsSaid) {
+  using Damage = SimulatedLine::Damage;
+  for (const Damage kind : {Damage::cut, Damage::flip, Damage::random}) {
+    SickBench bench;
+    bench.line->damage(kind, 0.05);  // of the pieces in which bytes go over the line: a third of the telegrams
+    bench.link->start();
+    EXPECT_TRUE(bench.run_until([&] { return bench.streaming(); })) << bench.state(Device::laser_front);
+  }
+}
+
 TEST(SickLink, FirmwareWithAShortConfigurationBlockIsServedToo) {
   SickBench bench({.config_bytes = 32});
   bench.link->start();
