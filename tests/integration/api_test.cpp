@@ -5,6 +5,7 @@
 #include <atomic>
 #include <set>
 
+#include "protocols/files/map_server_file.hpp"
 #include "tests/support/http_client.hpp"
 #include "tests/support/json_schema.hpp"
 #include "tests/support/server_process.hpp"
@@ -203,6 +204,15 @@ TEST(Requests, ThatCannotBeAreRefusedWithAReason) {
   }
   EXPECT_THAT(code(Json{{"x", x}, {"y", y}}.dump()), testing::AnyOf("inside_obstacle", "in_hazard", "unreachable"))
       << "inside an exhibit";
+  const robot::OccupancyGrid map = files::read_map_server("static/sites/rhine-hall/map.yaml");
+  std::vector<robot::Point> walls;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (robot::is_occupied(map[map.cell_at(i)])) walls.push_back(map.center(map.cell_at(i)));
+  }
+  for (std::size_t i = 0; i < walls.size(); i += walls.size() / 4) {
+    EXPECT_EQ(code(Json{{"x", walls[i].x}, {"y", walls[i].y}}.dump()), "inside_obstacle")
+        << "a wall at " << walls[i].x << ", " << walls[i].y;
+  }
   EXPECT_EQ(client.get(api + "/queue").json().size(), 0u);
 }
 
