@@ -188,7 +188,7 @@ bool Tracker::surprising(const ScanReading& reading) const {
 // the scan is to be weighed once more.
 bool Tracker::doubt(const Beams& beams, const ScanReading& reading) {
   last_far_ = count_beams(reading).far_share();
-  if (position_sigma(best_.covariance) > 0.5 || beams.beams.size() < 10) return false;
+  if (map_.empty() || position_sigma(best_.covariance) > 0.5 || beams.beams.size() < 10) return false;
   const bool contradicted = last_far_ >= usual_far_ + config_.doubt_above;
   if (!contradicted) usual_far_ += 0.02 * (last_far_ - usual_far_);
   const bool vague = position_sigma(predicted_covariance_) > config_.doubt_blind;

@@ -6,6 +6,7 @@
 #include "tests/support/hostile_bytes.hpp"
 #include "tests/support/web_house.hpp"
 
+using namespace std::string_literals;
 using testing_support::HttpClient;
 using testing_support::RawLine;
 using testing_support::WebHouse;
@@ -49,13 +50,13 @@ INSTANTIATE_TEST_SUITE_P(
     All, HostileHttp,
     testing::Values(
         Case{"no request line", "\r\n\r\n\r\n", "400"}, Case{"garbage", "\x01\x02\x03\r\n\r\n", "400"},
-        Case{"TLS", std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xFC\x03\x03", 11), "400"},
+        Case{"TLS", "\x16\x03\x01\x02\x00\x01\x00\x01\xFC\x03\x03"s, "400"},
         Case{"HTTP/2", "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", "5"}, Case{"HTTP/0.9", "GET /\r\n\r\n", "400"},
         Case{"no Host", "GET / HTTP/1.1\r\n\r\n", "400"},
         Case{"two Hosts", "GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", "400"},
         Case{"bare LF", "GET / HTTP/1.1\nHost: x\n\n", "505"},
         Case{"space before the colon", "GET / HTTP/1.1\r\nHost : x\r\n\r\n", "400"},
-        Case{"NUL in a header", std::string("GET / HTTP/1.1\r\nHost: x\r\nA: b\0c\r\n\r\n", 37), "400"},
+        Case{"NUL in a header", "GET / HTTP/1.1\r\nHost: x\r\nA: b\0c\r\n\r\n"s, "400"},
         Case{"absolute form", "GET http://x/ HTTP/1.1\r\nHost: x\r\n\r\n", "400"},
         Case{"climbing", "GET /../../etc/passwd HTTP/1.1\r\nHost: x\r\n\r\n", "400"},
         Case{"escaped NUL", "GET /%00 HTTP/1.1\r\nHost: x\r\n\r\n", "400"},
