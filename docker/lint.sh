@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 cache=build/tidy
 mkdir -p "$cache"
-rules=$(cat .clang-tidy $(git ls-files '*.hpp') | sha256sum | cut -c1-16)
+rules=$(cat $(git ls-files '*.clang-tidy' '*.hpp') | sha256sum | cut -c1-16)
 check() {
   source=$1
   stamp="$cache/$(printf '%s %s' "$2" "$(sha256sum <"$source")" | sha256sum | cut -c1-32)"

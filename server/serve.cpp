@@ -127,7 +127,7 @@ class Server {
     sinks.motors = [this](const robot::EnableMotors& motors) { wires_->enable(motors); };
     sinks.viewers = [this](std::vector<robot::Output> outputs, robot::Time now) {
       for (const robot::Output& output : outputs) hear(output);
-      net::post(web_io_, [this, outputs = std::move(outputs), now]() mutable { web_->take(std::move(outputs), now); });
+      net::post(web_io_, [this, outputs = std::move(outputs), now] { web_->take(outputs, now); });
     };
     if (desk_) {
       sinks.input = [this](const robot::Input& input) { desk_->input(input); };

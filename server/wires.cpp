@@ -9,7 +9,7 @@ constexpr std::array<const char*, 3> device_names = {"base", "laser_front", "las
 
 }  // namespace
 
-Wires::Wires(net::io_context& io, const LinePaths& paths, const robot::Body& body, devices::Clock clock,
+Wires::Wires(net::io_context& io, const LinePaths& paths, const robot::Body& body, const devices::Clock& clock,
              devices::EventSink sink)
     : sink_(std::move(sink)),
       counted_since_(Clock::now()),

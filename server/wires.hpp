@@ -26,7 +26,7 @@ struct LinePaths {
 
 class Wires {
  public:
-  Wires(net::io_context& io, const LinePaths& paths, const robot::Body& body, devices::Clock clock,
+  Wires(net::io_context& io, const LinePaths& paths, const robot::Body& body, const devices::Clock& clock,
         devices::EventSink sink);
 
   void start();

@@ -81,6 +81,7 @@ Routes::Routes(const Museum& museum, const Walls& walls)
   const auto add = [&](std::vector<Point> spots) {
     if (spots.empty()) spots = all;
     std::vector<Cell> sources;
+    sources.reserve(spots.size());
     for (const Point p : spots) sources.push_back(cost_.cell(p));
     ways_.push_back(field(sources));
     spots_.push_back(std::move(spots));

@@ -83,7 +83,7 @@ void add_camera_routes(Router& router, Web::Parts& web) {
         Reply reply;
         reply.content_type = std::string("multipart/x-mixed-replace; boundary=") + multipart_boundary;
         reply.with("Cache-Control", "no-store").with("X-Accel-Buffering", "no");
-        reply.takeover = [&web, camera](tcp::socket socket, std::string) {
+        reply.takeover = [&web, camera](tcp::socket socket, const std::string&) {
           return stream(web, camera, std::move(socket));
         };
         co_return reply;

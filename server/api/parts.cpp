@@ -13,6 +13,7 @@ using protocols::web::Problem;
 
 std::vector<std::string> camera_ids(const std::vector<CameraInfo>& cameras) {
   std::vector<std::string> ids;
+  ids.reserve(cameras.size());
   for (const auto& camera : cameras) ids.push_back(camera.id);
   return ids;
 }

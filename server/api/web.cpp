@@ -31,7 +31,7 @@ void Web::start() {
 
 unsigned short Web::port() const { return parts_->http->port(); }
 
-void Web::take(std::vector<robot::Output> outputs, robot::Time now) {
+void Web::take(const std::vector<robot::Output>& outputs, robot::Time now) {
   parts_->heard_robot = Clock::now();
   parts_->metrics.batches.Increment();
   parts_->view->take(outputs, now);

@@ -76,7 +76,7 @@ class Web {
   unsigned short port() const;
 
   // Web thread. A batch of what the robot said, also an empty one: it shows that the robot lives.
-  void take(std::vector<robot::Output> outputs, robot::Time now);
+  void take(const std::vector<robot::Output>& outputs, robot::Time now);
   // Web thread. A camera's newest picture; unknown cameras are ignored.
   void frame(const std::string& camera, std::shared_ptr<const std::string> jpeg, robot::Time time);
   // Web thread, about once a second.

@@ -47,7 +47,7 @@ std::string head_of(const Reply& reply, bool keep_alive) {
   head += reply.status == 101 ? "Switching Protocols" : protocols::web::status_title(reply.status);
   head += "\r\nDate: " + http_date() + "\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: same-origin\r\n";
   if (!reply.content_type.empty()) head += "Content-Type: " + reply.content_type + "\r\n";
-  for (const auto& [name, value] : reply.headers) head += name + ": " + value + "\r\n";
+  for (const auto& [name, value] : reply.headers) head.append(name).append(": ").append(value).append("\r\n");
   if (reply.status != 101) {
     if (!reply.takeover && reply.status != 204 && reply.status != 304) {
       head += "Content-Length: " + std::to_string(reply.body ? reply.body->size() : 0) + "\r\n";
@@ -80,7 +80,7 @@ HttpConnection::HttpConnection(tcp::socket socket, net::ip::address peer, const 
                                const Handler& answer, const HttpServer::Observe& observe)
     : stream_(std::move(socket)),
       buffer_(limits.header_bytes + 16 * 1024),
-      peer_(peer),
+      peer_(std::move(peer)),
       limits_(limits),
       answer_(answer),
       observe_(observe) {

@@ -83,7 +83,7 @@ net::awaitable<void> HttpServer::serve(tcp::socket socket, net::ip::address peer
     HttpServer& server;
     HttpConnection& connection;
     net::ip::address peer;
-    Counted(HttpServer& s, HttpConnection& c, net::ip::address p) : server(s), connection(c), peer(p) {
+    Counted(HttpServer& s, HttpConnection& c, net::ip::address p) : server(s), connection(c), peer(std::move(p)) {
       ++server.connections_;
       ++server.by_address_[peer];
       server.open_.insert(&connection);

@@ -66,7 +66,7 @@ bool is_sound(SQLite::Database& database) {
 
 // Moves the file and its log out of the way; gives the new name.
 std::string set_aside(const std::string& path, WallSeconds now) {
-  const std::string aside = path + ".damaged-" + std::to_string(static_cast<long long>(now));
+  std::string aside = path + ".damaged-" + std::to_string(static_cast<long long>(now));
   for (const char* suffix : {"", "-wal", "-shm"}) {
     std::error_code ignored;
     std::filesystem::rename(path + suffix, aside + suffix, ignored);

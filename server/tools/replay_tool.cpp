@@ -85,8 +85,7 @@ nlohmann::json run_replay(const ReplayOptions& options) {
   report["log"] = log;
   if (corrected) report["warning"] = "the log's poses were corrected by a mapper: they are no odometry";
   if (!options.track.empty()) {
-    auto track = score.track();
-    files::write_poses(options.track, track);
+    files::write_poses(options.track, score.track());
   }
   return report;
 }
