@@ -136,7 +136,7 @@ export const en = {
     tours: (exhibits: string, minutes: string) => `${exhibits} in ${minutes}. Start any time.`,
     exhibits: (n: number) => (n === 1 ? "1 exhibit" : `${inWords(n, "en")} exhibits`),
     exhibitsShort: (n: number) => (n === 1 ? "1 exhibit" : `${n} exhibits`),
-    minutes: (n: number) => (n === 1 ? "one minute" : `${inWords(n, "en")} minutes`),
+    minutes: (n: number) => (n === 1 ? "one minute" : `${inWords(n, "en").toLowerCase()} minutes`),
     minutesShort: (n: number) => (n === 1 ? "1 minute" : `${n} minutes`),
     touch: "Touch to begin",
     whereTo: "Where shall we go?",

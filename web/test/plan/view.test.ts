@@ -66,10 +66,18 @@ describe("names on the plan", () => {
     const [placed] = placeLabels([anchor("a", 10, 100)], [], () => 0, window);
     expect(placed!.x - 30).toBeGreaterThanOrEqual(0);
   });
-  it("of rooms give way to those of exhibits", () => {
+  it("of rooms make way for those of exhibits, or are left out", () => {
     const room = { ...anchor("room", 100, 120), on: true };
-    expect(placeLabels([room, anchor("a", 100, 100)], [], () => 0, window).map((p) => p.id)).toEqual(["a"]);
     expect(placeLabels([room], [], () => 0, window)).toMatchObject([{ id: "room", x: 100 }]);
+    const [name, moved] = placeLabels([room, anchor("a", 100, 100)], [], () => 0, window);
+    expect(name!.id).toBe("a");
+    expect(Math.abs(moved!.y - name!.y)).toBeGreaterThanOrEqual(14);
+    const crowded = [{ x0: 0, y0: 60, x1: 200, y1: 180 }];
+    expect(placeLabels([room], crowded, () => 0, window)).toEqual([]);
+  });
+  it("do not cut even one letter of each other", () => {
+    const [, moved] = placeLabels([{ ...anchor("a", 100, 100), half: [12, 12] }, { ...anchor("room", 158, 123), on: true }], [], () => 0, window);
+    expect(moved!.y).not.toBeCloseTo(123 + 14 * 0.3, 0);
   });
   it("stand below when there is room", () => {
     const [placed] = placeLabels([anchor("a", 100, 100)], [], () => 0, window);
