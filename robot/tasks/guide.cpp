@@ -306,8 +306,15 @@ void Guide::leave(Time now, std::vector<Output>& out) {
   enter(State::idle, now);
 }
 
+// Of travel to the first stop: along the path once there is one, before that as the travel table has it.
+double Guide::metres_to_front(const Progress& progress) const {
+  if (queue_.empty() || state_ == State::telling || state_ == State::asking) return 0.0;
+  if (state_ == State::driving && progress.distance_to_go > 0.0) return progress.distance_to_go;
+  return travel_(PointTarget{here_.position(), {}}, queue_.visits().front().target);
+}
+
 void Guide::report(const Progress& progress, std::vector<Output>& out) {
-  queue_.estimate(state_ == State::driving ? progress.distance_to_go : 0.0, travel_);
+  queue_.estimate(metres_to_front(progress), travel_);
   for (Request& request : queue_.take_changes()) out.push_back(RequestChanged{std::move(request)});
 }
 

@@ -89,6 +89,7 @@ class Guide {
   void tell(int narration, Time now, std::vector<Output>& out);
   void leave(Time now, std::vector<Output>& out);
   void reorder(const Pose& here, Time now);
+  double metres_to_front(const Progress& progress) const;
   void report(const Progress& progress, std::vector<Output>& out);
   const Exhibit* exhibit_here() const;
 

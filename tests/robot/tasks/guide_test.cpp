@@ -103,6 +103,7 @@ class GuideTest : public testing::Test {
 TEST_F(GuideTest, DrivesExplainsAndFulfils) {
   const RequestId id = ask("b");
   EXPECT_EQ(state(id), RequestState::pending);
+  EXPECT_NEAR(requests_.at(id).eta_seconds, 20.0 / 0.4, 1.0);  // known before it moves
   wait(1);
   EXPECT_EQ(state(id), RequestState::active);
   EXPECT_EQ(status().activity, Activity::driving);
