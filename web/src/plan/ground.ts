@@ -229,7 +229,7 @@ function paintText(
 // Which share of a box on the screen is wall, by a few samples.
 function wallShare(g: Ground, v: View, box: Box): number {
   let hits = 0;
-  const nx = 6, ny = 3;
+  const nx = Math.ceil((box.x1 - box.x0) / 10), ny = Math.ceil((box.y1 - box.y0) / 4); // finer than a wall is thick
   for (let a = 0; a < nx; a++) {
     for (let b = 0; b < ny; b++) {
       const [x, y] = toMap(v, [box.x0 + ((a + 0.5) / nx) * (box.x1 - box.x0), box.y0 + ((b + 0.5) / ny) * (box.y1 - box.y0)]);

@@ -38,7 +38,9 @@ export function placeLabels(anchors: Anchor[], taken: Box[], busy: (box: Box) =>
     candidates(anchor, window).forEach((candidate, choice) => {
       const cover = boxes.reduce((sum, box) => sum + overlap(candidate.box, box), 0) / area(candidate.box);
       // A touch counts at once: the share of a letter is small, but a name without it is misread.
-      const cost = (cover > 0 ? 0.4 : 0) + cover * 5 + busy(candidate.box) * 3 + choice * 0.08;
+      const cut = 1 - overlap(candidate.box, window) / area(candidate.box);
+      const astray = anchor.on && busy(between(anchor.at, candidate.box)) > 0; // behind a wall a room's name is another room's
+      const cost = (cover > 0 ? 0.4 : 0) + (cover + cut) * 5 + busy(candidate.box) * 3 + choice * 0.08 + (astray ? 5 : 0);
       if (cost < bestCost) (best = candidate), (bestCost = cost);
     });
     if (!best || (bestCost > (anchor.on ? 0.35 : 1.2) && !anchor.must)) continue;
@@ -72,6 +74,11 @@ function candidates(a: Anchor, window: Box): { placed: Placed; box: Box }[] {
 // Room names keep off their neighbours: two names that nearly touch read as one.
 function spaced(c: { placed: Placed; box: Box }): { placed: Placed; box: Box } {
   return { placed: c.placed, box: { ...c.box, x0: c.box.x0 - 2 * gap, x1: c.box.x1 + 2 * gap } };
+}
+// The way from a room's place to its name.
+function between([x, y]: Point, to: Box): Box {
+  const middle = (to.y0 + to.y1) / 2;
+  return { x0: x - 1, x1: x + 1, y0: Math.min(y, middle), y1: Math.max(y, middle) };
 }
 function area(b: Box): number {
   return Math.max(1, (b.x1 - b.x0) * (b.y1 - b.y0));

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { breakName, placeLabels, type Anchor } from "../../src/plan/labels";
+import { breakName, placeLabels, type Anchor, type Box } from "../../src/plan/labels";
 import { centroid, clampView, fit, inside, panBy, toMap, toScreen, zoomAt, type View } from "../../src/plan/view";
 import { orientedBox } from "../../src/plan/art";
 import { randomOf } from "../random";
@@ -74,6 +74,18 @@ describe("names on the plan", () => {
     expect(Math.abs(moved!.y - name!.y)).toBeGreaterThanOrEqual(14);
     const crowded = [{ x0: 0, y0: 60, x1: 200, y1: 180 }];
     expect(placeLabels([room], crowded, () => 0, window)).toEqual([]);
+  });
+  it("of rooms stay in their room", () => {
+    const room = { ...anchor("room", 100, 100), on: true };
+    const wall = (box: Box) => (box.y0 < 118 && box.y1 > 114 ? 0.2 : 0);
+    const crowded = [{ x0: 0, y0: 60, x1: 200, y1: 112 }];
+    expect(placeLabels([room], crowded, () => 0, window)).toHaveLength(1);
+    expect(placeLabels([room], crowded, wall, window)).toEqual([]);
+  });
+  it("are not cut by the window's edge where they can stand elsewhere", () => {
+    const [placed] = placeLabels([anchor("a", 100, 15)], [{ x0: 0, y0: 30, x1: 200, y1: 60 }], () => 0, window);
+    expect(placed!.y).toBeGreaterThan(10);
+    expect(placed!.align).not.toBe("center");
   });
   it("do not cut even one letter of each other", () => {
     const [, moved] = placeLabels([{ ...anchor("a", 100, 100), half: [12, 12] }, { ...anchor("room", 158, 123), on: true }], [], () => 0, window);
