@@ -64,13 +64,16 @@ void add_museum_routes(Router& router, Web::Parts& web) {
                });
              }));
   router.add("GET", api + "map", at_once([&web](Call& call) {
-               return web.document(call, "map",
-                                   [&] { return protocols::web::encode_map(web.museum.map, "/api/v1/map.png"); });
+               Reply reply = web.document(
+                   call, "map", [&] { return protocols::web::encode_map(web.museum.map, "/api/v1/map.png"); });
+               return reply.with("Vary", "Accept");
              }));
-  router.add("GET", api + "map.png", at_once([&web](Call& call) {
-               return web.document(call, "map.png", "image/png", [&] { return map_png(web.museum.map); });
-             }),
-             "image/png");
+  const Handler picture = at_once([&web](Call& call) {
+    Reply reply = web.document(call, "map.png", "image/png", [&] { return map_png(web.museum.map); });
+    return reply.with("Vary", "Accept");
+  });
+  router.add("GET", api + "map", picture, "image/png");
+  router.add("GET", api + "map.png", picture, "image/png");
   router.add("GET", api + "openapi.json", at_once([&web](Call& call) {
                return web.document(call, "openapi", [] { return yaml_to_json(openapi_yaml); });
              }));

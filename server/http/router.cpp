@@ -1,6 +1,7 @@
 #include "server/http/router.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 namespace server {
@@ -41,10 +42,10 @@ bool is_json(std::string_view content_type) {
 
 }  // namespace
 
-bool accepts(std::string_view accept, std::string_view content_type) {
-  if (trimmed(accept).empty()) return true;
+std::optional<std::size_t> accepted_at(std::string_view accept, std::string_view content_type) {
+  if (trimmed(accept).empty()) return 0;
   const std::string_view family = content_type.substr(0, content_type.find('/'));
-  while (!accept.empty()) {
+  for (std::size_t place = 0;; ++place) {
     const std::size_t end = accept.find(',');
     const std::string_view range = trimmed(accept.substr(0, end));
     const std::string_view type = trimmed(range.substr(0, range.find(';')));
@@ -53,11 +54,10 @@ bool accepts(std::string_view accept, std::string_view content_type) {
         q != std::string_view::npos && range.substr(q + 2).find_first_not_of("0.") == std::string_view::npos;
     const bool fits =
         type == "*/*" || type == content_type || (type.ends_with("/*") && type.substr(0, type.size() - 2) == family);
-    if (fits && !refused) return true;
-    if (end == std::string_view::npos) break;
+    if (fits && !refused) return place;
+    if (end == std::string_view::npos) return std::nullopt;
     accept.remove_prefix(end + 1);
   }
-  return false;
 }
 
 void Router::add(std::string method, const std::string& pattern, Handler handler, std::string produces) {
@@ -80,16 +80,23 @@ net::awaitable<Reply> Router::route(Call& call) const {
     if (matches(route, segments)) fewest = std::min(fewest, open);
   }
   std::set<std::string> allowed;
+  std::string produced;
+  std::optional<std::size_t> place;
   for (const Route& route : routes_) {
     const auto open =
         static_cast<std::size_t>(std::count_if(route.segments.begin(), route.segments.end(), is_parameter));
     if (open != fewest || !matches(route, segments)) continue;
     allowed.insert(route.method);
     if (route.method == "GET") allowed.insert("HEAD");
-    if (route.method == call.method) found = &route;
+    if (route.method != call.method) continue;
+    produced += (produced.empty() ? "" : " or ") + route.produces;
+    const auto accepted = accepted_at(call.header("Accept"), route.produces);
+    if (!accepted || (place && *place <= *accepted)) continue;
+    found = &route;
+    place = accepted;
   }
   if (allowed.empty()) co_return problem_reply({404, "not_found", "There is nothing at this path.", ""});
-  if (!found) {
+  if (produced.empty()) {
     allowed.insert("OPTIONS");
     std::string allow;
     for (const auto& method : allowed) allow += (allow.empty() ? "" : ", ") + method;
@@ -100,9 +107,7 @@ net::awaitable<Reply> Router::route(Call& call) const {
     }
     co_return reply.with("Allow", allow);
   }
-  if (!accepts(call.header("Accept"), found->produces)) {
-    co_return problem_reply({406, "not_acceptable", "This path gives " + found->produces + " only.", ""});
-  }
+  if (!found) co_return problem_reply({406, "not_acceptable", "This path gives " + produced + " only.", ""});
   if (!call.body.empty() && call.method != "DELETE" && !is_json(call.header("Content-Type"))) {
     co_return problem_reply({415, "unsupported_media_type", "Send the body as application/json.", ""});
   }

@@ -2,7 +2,9 @@
 // 406, 415, OPTIONS.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/http/message.hpp"
@@ -12,7 +14,8 @@ namespace server {
 class Router {
  public:
   // `pattern` is a path whose segments may be "{name}": any one segment, handed over in Call::parameters in order.
-  // `produces`: the content type of its answers, for 406.
+  // `produces`: the content type of its answers. Of routes that differ in this alone the one that the Accept header
+  // names first answers, or the one added first; 406 when it names none.
   void add(std::string method, const std::string& pattern, Handler handler, std::string produces = "application/json");
 
   // Whether any route has this path.
@@ -25,13 +28,12 @@ class Router {
     Handler handler;
     std::string produces;
   };
-  const std::vector<Route>& routes() const { return routes_; }
 
  private:
   std::vector<Route> routes_;
 };
 
-// Whether an Accept header (empty: anything) takes a content type.
-bool accepts(std::string_view accept, std::string_view content_type);
+// Where in an Accept header (empty: anything) the first range stands that takes a content type; none: it is refused.
+std::optional<std::size_t> accepted_at(std::string_view accept, std::string_view content_type);
 
 }  // namespace server

@@ -37,6 +37,10 @@ TEST(Rest, ShowsTheMuseum) {
   EXPECT_EQ(png.header("content-type"), "image/png");
   EXPECT_EQ(png.body.substr(1, 3), "PNG");
   EXPECT_EQ(client.get(map["url"], {{"If-None-Match", png.header("etag")}}).status, 304);
+  EXPECT_EQ(client.get(api + "map", {{"Accept", "image/png"}}).body, png.body);
+  EXPECT_EQ(client.get(api + "map", {{"Accept", "text/html, image/*, */*;q=0.8"}}).body, png.body) << "an <img> tag";
+  EXPECT_EQ(client.get(api + "map", {{"Accept", "*/*"}}).json(), map);
+  EXPECT_EQ(client.get(api + "map", {{"Accept", "text/html"}}).status, 406);
 }
 
 TEST(Rest, TakesARequestThroughItsLife) {

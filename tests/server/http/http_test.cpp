@@ -42,11 +42,11 @@ RC_GTEST_PROP(Url, NeverClimbsWhateverComes, ()) {
 }
 
 TEST(Accept, KnowsRangesAndRefusals) {
-  EXPECT_TRUE(accepts("", "application/json"));
-  EXPECT_TRUE(accepts("text/html, application/*;q=0.5", "application/json"));
-  EXPECT_TRUE(accepts("*/*", "image/png"));
-  EXPECT_FALSE(accepts("text/html", "application/json"));
-  EXPECT_FALSE(accepts("application/json;q=0", "application/json"));
+  EXPECT_EQ(accepted_at("", "application/json"), 0u);
+  EXPECT_EQ(accepted_at("text/html, application/*;q=0.5", "application/json"), 1u);
+  EXPECT_EQ(accepted_at("*/*", "image/png"), 0u);
+  EXPECT_EQ(accepted_at("text/html", "application/json"), std::nullopt);
+  EXPECT_EQ(accepted_at("application/json;q=0", "application/json"), std::nullopt);
   EXPECT_TRUE(takes_encoding("gzip, br", "br"));
   EXPECT_FALSE(takes_encoding("gzip, br;q=0.0", "br"));
   EXPECT_FALSE(takes_encoding("", "gzip"));
