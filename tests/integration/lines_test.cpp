@@ -108,6 +108,7 @@ class Lines : public ::testing::Test {
 
 TEST_F(Lines, PulledWhileDrivingStopTheRobotUntilTheyAreBack) {
   pull_and_put_back("laser_front", "laser-front", "laser_silent");
+  pull_and_put_back("laser_rear", "laser-rear", "laser_silent");
   pull_and_put_back("base", "base", "base_silent");
   EXPECT_EQ(server_.stop(), 0);
 }
