@@ -3,7 +3,7 @@
 #   ./test.sh --all     also with the sanitizers, and clang-tidy over every source
 set -euo pipefail
 cd "$(dirname "$0")"
-docker/install.sh
+docker/install.sh --tests
 
 echo "== format"
 git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror

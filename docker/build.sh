@@ -6,7 +6,13 @@ cd "$(dirname "$0")/.."
 preset=${1:-release}
 [ $# -gt 0 ] && shift
 
-[ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" >"/dev/null"
+# The docent program alone needs none of the tests' packages. Once a build has its tests it keeps them.
+cache=build/$preset/CMakeCache.txt
+if [ $# -gt 0 ]; then
+  grep -qs 'DOCENT_TESTS:BOOL=ON' "$cache" || cmake --preset "$preset" -DDOCENT_TESTS=ON >/dev/null
+else
+  [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" -DDOCENT_TESTS=OFF >/dev/null
+fi
 cmake --build --preset "$preset" --target "${@:-docent}"
 
 # The pages: packages only when the lock file changed, bundles only when a source changed.

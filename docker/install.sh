@@ -1,10 +1,13 @@
 #!/usr/bin/env bash
-# Installs what docker/apt-packages.txt names and is missing. As root, or with sudo. Quick when nothing is missing.
+# Installs what docker/apt-packages.txt names and is missing; with --tests also what stands below its line "# tests".
+# As root, or with sudo. Quick when nothing is missing.
 set -euo pipefail
 cd "$(dirname "$0")"
 
+wanted='/^# tests/,$d'
+[ "${1:-}" = "--tests" ] && wanted=
 missing=()
-for package in $(sed 's/#.*//' apt-packages.txt); do
+for package in $(sed -e "$wanted" -e 's/#.*//' apt-packages.txt); do
   # Node and npm may have come another way (Debian's npm conflicts with other builds of Node): the commands count.
   case "$package" in
     nodejs) command -v node >/dev/null && continue ;;
