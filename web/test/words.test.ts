@@ -19,6 +19,7 @@ describe("numbers in words people use", () => {
     expect(about(240, "de")).toBe("4 min");
     expect(about(4200, "en")).toBe("1 h 10 min");
     expect(about(7200, "en")).toBe("2 h");
+    expect([de.watching(1), de.watching(1204)]).toEqual(["1 schaut zu", "1.204 schauen zu"]);
     expect(countdown(100)).toBe("1:40");
     expect(countdown(-3)).toBe("0:00");
     expect(decimal(0.7, 2, "de")).toBe("0,70");

@@ -13,7 +13,7 @@ export const de: Words = {
   live: "Live",
   connecting: "Verbinde",
   noLine: "Keine Verbindung",
-  watching: (n) => `${count(n, "de")} schauen zu`,
+  watching: (n) => (n === 1 ? "1 schaut zu" : `${count(n, "de")} schauen zu`),
   milliseconds: (n) => `${n} ms`,
   opening: "Die Halle wird aufgeschlossen …",
   openingDetail: "Erst der Plan, dann der Roboter, dann die Bilder.",
