@@ -24,7 +24,7 @@ npm --prefix web run --silent test:browser
 echo "== sanitizers"
 docker/build.sh asan all
 ctest --preset asan -j2 -E 'bench_runs|replay_test'
-docker/build.sh tsan docent server_devices_test server_stream_test server_api_test integration_test
+docker/build.sh tsan docent server_{devices,store,stream,http,api,tools}_test integration_test
 ctest --preset tsan -j2 -R 'server_|integration_test'
 
 echo "== lint"
