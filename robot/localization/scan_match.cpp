@@ -70,7 +70,7 @@ ScanMatch match_scan(const DistanceField& distances, double surface_offset, std:
 
 ScanMatch search_nearby(const LikelihoodField& field, std::span<const Beam> beams, const Pose& around,
                         const ScanMatchConfig& config) {
-  constexpr int reach = 10, turns = 10;  // lattice steps to every side
+  constexpr int reach = 5, turns = 10;  // lattice steps to every side
   constexpr double step = 0.2, turn = radians(4);
   std::vector<double> x, y, theta;
   for (int k = -turns; k <= turns; ++k) {

@@ -33,7 +33,7 @@ struct ScanMatch {
 ScanMatch match_scan(const DistanceField& distances, double surface_offset, std::span<const Beam> beams,
                      const Pose& prior_mean, const Eigen::Matrix3d& prior_covariance, const ScanMatchConfig& config);
 
-// The pose near `around` that fits the scan best: a lattice of 2 m and 40 degrees to every side, then the fine
+// The pose near `around` that fits the scan best: a lattice of 1 m and 40 degrees to every side, then the fine
 // alignment. For a belief that has come off the track, when wheels slipped farther than any noise allows for.
 ScanMatch search_nearby(const LikelihoodField& field, std::span<const Beam> beams, const Pose& around,
                         const ScanMatchConfig& config);

@@ -106,17 +106,5 @@ TEST(SearchNearby, FindsBackAfterALongSlip) {
   EXPECT_THAT(match.pose, PoseNear(truth, 0.06, 0.02));
 }
 
-TEST(SearchNearby, FindsBackAlongACorridorToTheDoorInSight) {
-  std::vector<std::string> rows(5, std::string(400, '#'));
-  for (int i = 1; i < 5; ++i) rows[static_cast<std::size_t>(i)].replace(200, 10, "..........");
-  for (int i = 0; i < 20; ++i) rows.push_back(std::string(400, '.'));
-  rows.push_back(std::string(400, '#'));
-  Fixture f(ascii_world(cell, rows));
-  const Pose truth{20.5, 1.2, pi / 2};
-  const Pose lagging{18.8, 1.2, pi / 2};
-  const auto match = search_nearby(f.field, f.scan(truth, 0.01).beams, lagging, {});
-  EXPECT_THAT(match.pose, PoseNear(truth, 0.06, 0.02));
-}
-
 }  // namespace
 }  // namespace robot
