@@ -4,7 +4,7 @@
   tests/bench/figures.py simulate [seeds...]     two simulated hours a museum and seed, two at a time
   tests/bench/figures.py replay [data folder]    every recorded log
 """
-import concurrent.futures, json, math, os, pathlib, subprocess, sys, tempfile
+import concurrent.futures, gzip, json, math, os, pathlib, subprocess, sys, tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCENT = os.environ.get("DOCENT", str(ROOT / "build/release/docent"))
@@ -66,18 +66,17 @@ def replay(data):
             log = data / (log + ".log.gz")
             docent("map", log, "--poses", poses, "--out", folder, *mapped)
             show(name, docent("replay", log, "--map", folder, "--truth", poses, *tested))
-        for tour, plan in (("museum_tour", "museum_hollow"), ("museum_tour181", "museum_hollow")):
-            show(f"peer-workload, {tour}", peers(data / "peer-workload", tour, plan, pathlib.Path(folder)))
+        for tour in ("museum_tour", "museum_tour181"):
+            show(f"peer-workload, {tour}", peers(data / "peer-workload", tour, pathlib.Path(folder)))
         for number in (1, 2, 3):
             wean(data / "wean", number, pathlib.Path(folder))
 
 
-def peers(data, tour, plan, folder):
-    for suffix in (".yaml", ".pgm"):
-        packed = data / f"{plan}{suffix}.gz"
-        text = subprocess.run(["zcat", packed], capture_output=True, check=True).stdout if packed.exists() else (data / f"{plan}{suffix}").read_bytes()
-        (folder / f"{plan}{suffix}").write_bytes(text)
-    return docent("replay", data / f"{tour}.log.gz", "--map", folder / f"{plan}.yaml", "--truth", data / f"{tour}.gt.txt.gz")
+def peers(data, tour, folder):
+    plan = folder / "museum_hollow.yaml"
+    plan.write_bytes((data / plan.name).read_bytes())
+    (folder / "museum_hollow.pgm").write_bytes(gzip.decompress((data / "museum_hollow.pgm.gz").read_bytes()))
+    return docent("replay", data / f"{tour}.log.gz", "--map", plan, "--truth", data / f"{tour}.gt.txt.gz")
 
 
 def wean(data, number, folder):

@@ -229,7 +229,8 @@ function paintText(
 // Which share of a box on the screen is wall, by a few samples.
 function wallShare(g: Ground, v: View, box: Box): number {
   let hits = 0;
-  const nx = Math.ceil((box.x1 - box.x0) / 10), ny = Math.ceil((box.y1 - box.y0) / 4); // finer than a wall is thick
+  const count = (length: number, px: number) => Math.max(1, Math.ceil(length / px));
+  const nx = count(box.x1 - box.x0, 10), ny = count(box.y1 - box.y0, 4); // finer than a wall is thick
   for (let a = 0; a < nx; a++) {
     for (let b = 0; b < ny; b++) {
       const [x, y] = toMap(v, [box.x0 + ((a + 0.5) / nx) * (box.x1 - box.x0), box.y0 + ((b + 0.5) / ny) * (box.y1 - box.y0)]);

@@ -37,9 +37,9 @@ export function placeLabels(anchors: Anchor[], taken: Box[], busy: (box: Box) =>
     let best: { placed: Placed; box: Box } | null = null, bestCost = Infinity;
     candidates(anchor, window).forEach((candidate, choice) => {
       const cover = boxes.reduce((sum, box) => sum + overlap(candidate.box, box), 0) / area(candidate.box);
-      // A touch counts at once: the share of a letter is small, but a name without it is misread.
       const cut = 1 - overlap(candidate.box, window) / area(candidate.box);
       const astray = anchor.on && busy(between(anchor.at, candidate.box)) > 0; // behind a wall a room's name is another room's
+      // A touch counts at once: the share of a letter is small, but a name without it is misread.
       const cost = (cover > 0 ? 0.4 : 0) + (cover + cut) * 5 + busy(candidate.box) * 3 + choice * 0.08 + (astray ? 5 : 0);
       if (cost < bestCost) (best = candidate), (bestCost = cost);
     });
