@@ -13,6 +13,7 @@ constexpr double carrot_near = 0.5, carrot_seconds = 1.3, carrot_far = 1.5;  // 
 constexpr double carrot_deviation = 0.15;                                    // m
 constexpr double clearance_reach = 2.2;      // m from the base within which standing things matter for clearance
 constexpr int judged_poses = 4;              // along an arc, for clearance
+constexpr int predicted_places = 3;          // on a walker's way
 constexpr double enough_progress = 0.05;     // m within the lookahead
 constexpr double slow = 0.25;                // m/s at which the robot may turn on the spot without braking first
 constexpr double least_turn = 0.25;          // rad/s; wheels stick below
@@ -41,7 +42,10 @@ DynamicWindow::Scene DynamicWindow::look(const MotionTask& task, const Pose& map
     if (!is_finite(o.position) || norm(o.position) > config_.reach) continue;
     scene.solid.push_back(o.position);
     const bool walks = o.velocity.x != 0.0 || o.velocity.y != 0.0;
-    if (walks) scene.solid.push_back(o.position + config_.prediction.count() * o.velocity);
+    // Whoever crosses may stop anywhere on the way.
+    for (int i = 1; walks && i <= predicted_places; ++i) {
+      scene.solid.push_back(o.position + (config_.prediction.count() * i / predicted_places) * o.velocity);
+    }
     if (walks) {
       scene.walking.push_back(o.position);
       scene.velocity.push_back(o.velocity);

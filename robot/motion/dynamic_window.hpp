@@ -26,7 +26,7 @@ struct DynamicWindowConfig {
   Seconds window{0.25};              // velocities that can be reached within this time are judged
   Seconds latency{0.15};             // from light on the sensor to force on the wheels
   Seconds lookahead{1.6};            // how far ahead the arcs are judged
-  Seconds prediction{0.5};           // walking people count where they are and where they will be after this
+  Seconds prediction{0.5};           // walking people count where they are and all the way they go in this time
   double margin = 0.05;              // m round the footprint that stays free
   double comfortable = 0.4;          // m of clearance beyond which more is no better
   double goal_distance = 0.08;       // m
@@ -79,7 +79,7 @@ class DynamicWindow {
   // What there is to judge arcs by, base frame.
   struct Scene {
     PathAhead path;
-    PointColumns solid;  // what stands, and walkers where they are and will be
+    PointColumns solid;  // what stands, and walkers where they are and soon will be
     PointColumns hazard;
     PointColumns near;               // what stands near enough to matter for clearance
     PointColumns walking, velocity;  // who walks there, and how

@@ -226,6 +226,21 @@ TEST(DynamicWindow, GivesWayToSomebodyWhoCrosses) {
   EXPECT_TRUE(drive.run(30));
 }
 
+TEST(DynamicWindow, WhoCrossesMayStopOnTheWay) {
+  // A child runs across: beside the way now, on its other side in half a second.
+  std::vector<Obstacle> child;
+  for (double angle = 0.0; angle < 2 * pi; angle += 0.2) {
+    child.push_back({Point{0.75 + 0.15 * std::cos(angle), 0.75 + 0.15 * std::sin(angle)}, {0.0, -3.0}});
+  }
+  DynamicWindow window(standard_body());
+  const MotionTask task{.path = {{0, 0}, {5, 0}}, .goal = {5, 0, 0}};
+  const VelocitySpace space = window.choose(task, {}, {0.65, 0.0}, child, {}, from_seconds(1)).space;
+  const std::size_t straight = space.angular.size() / 2;
+  EXPECT_NEAR(space.linear.back(), 0.7, 1e-6);
+  EXPECT_NEAR(space.angular[straight], 0.0, 1e-6);
+  EXPECT_TRUE(std::isnan(space.score[(space.linear.size() - 1) * space.angular.size() + straight]));
+}
+
 TEST(DynamicWindow, KeepsOffAHazardStripThatNoSensorSees) {
   Museum museum = museum_of(hall(12, 8));
   museum.hazards.push_back({"stairs", HazardKind::staircase, {{5, 2}, {7, 2}, {7, 5}, {5, 5}}, {}});
