@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace robot {
 namespace {
@@ -41,7 +42,7 @@ LikelihoodField::LikelihoodField(const OccupancyGrid& map, LikelihoodConfig conf
           static_cast<std::uint8_t>(level);
     }
   }
-  fill_costs();
+  set_unknown_cost(std::numeric_limits<double>::max());
 }
 
 void LikelihoodField::set_surface_offset(double metres) {
@@ -54,6 +55,12 @@ void LikelihoodField::set_hit_sigma(double metres) {
   fill_costs();
 }
 
+void LikelihoodField::set_unknown_cost(double nats) {
+  const double worst = std::log1p(config_.random) - std::log(config_.random);
+  unknown_cost_ = std::min(nats, config_.unknown_share * worst);
+  fill_costs();
+}
+
 void LikelihoodField::fill_costs() {
   const double norm = std::log1p(config_.random);
   for (int level = 0; level <= steps; ++level) {
@@ -61,8 +68,7 @@ void LikelihoodField::fill_costs() {
     const double p = std::exp(-d * d / (2.0 * sigma_ * sigma_)) + config_.random;
     cost_[static_cast<std::size_t>(level)] = static_cast<std::uint16_t>(std::lround((norm - std::log(p)) / cost_unit));
   }
-  const double worst = norm - std::log(config_.random);
-  cost_[255] = static_cast<std::uint16_t>(std::lround(config_.unknown_share * worst / cost_unit));
+  cost_[255] = static_cast<std::uint16_t>(std::lround(unknown_cost_ / cost_unit));
 }
 
 void LikelihoodField::weigh(std::span<const double> x, std::span<const double> y, std::span<const double> theta,

@@ -17,7 +17,7 @@ namespace robot {
 struct LikelihoodConfig {
   double hit_sigma = 0.10;     // m: sensor noise, map's grain and its age together
   double random = 0.05;        // weight of "anything" beside a perfect hit
-  double unknown_share = 0.5;  // an end in unknown space costs this share of the worst: it says little
+  double unknown_share = 0.5;  // an end in unknown space costs at most this share of the worst: it says little
   double effective_beams =
       15;  // neighbouring beams say the same: a scan counts like this many independent ones at most
 };
@@ -33,6 +33,8 @@ class LikelihoodField {
   double surface_offset() const { return offset_; }
   // Wider while the pose is hardly known, as configured when tracking.
   void set_hit_sigma(double metres);
+  // What an end in unknown space costs, nats; no more than configured.
+  void set_unknown_cost(double nats);
 
   // Log-likelihood of a scan at each pose, tempered; `ends` are the end points of its beams in the base frame. Poses
   // outside the map are allowed. out: one a pose.
@@ -55,6 +57,7 @@ class LikelihoodField {
   LikelihoodConfig config_;
   double offset_ = 0.0;
   double sigma_ = 0.1;
+  double unknown_cost_ = 0.0;
   DistanceField distances_;
   // Distances in steps, in a frame one cell wider than the map on each side; 255: unknown or outside.
   static constexpr int steps = 254;

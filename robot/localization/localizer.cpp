@@ -50,7 +50,7 @@ struct Localizer::Parts {
   struct Rival {
     Pose map_from_base;
     Pose odom_from_base;
-    int times = 1;  // found at this place
+    int times = 0;  // found at this place
   };
 
   LocalizerConfig config;
@@ -148,15 +148,14 @@ bool Localizer::Parts::convincing(const Peak& found, const Peak& current) {
   const bool better = found.score > current.score + margin && found.share > config.worth_adopting;
   if (!better || !settled) return better;
   // Among people, or in a room that the map does not know, a scan may fit somewhere by chance, but not at the same
-  // place again from another point of view. A lost robot that stands still gets no other one: there it must fit for
-  // longer.
+  // place again and again from other points of view. Only a lost robot that stands still gets no other one.
   const Pose seen_from_rival = rival ? relative(rival->odom_from_base, search_odom) : Pose{};
   const Pose expected = rival ? rival->map_from_base * seen_from_rival : Pose{};
   const bool same = rival && distance(expected.position(), found.pose.position()) < 0.5 &&
                     std::abs(wrap_angle(expected.theta - found.pose.theta)) < radians(10);
   if (!same) rival = Rival{found.pose, search_odom};
   const bool elsewhere = norm(seen_from_rival.position()) > 0.3 || std::abs(seen_from_rival.theta) > 0.3;
-  return same && (elsewhere || (!localized && ++rival->times >= config.looks_at_rest));
+  return ++rival->times >= config.looks && (elsewhere || !localized);
 }
 
 // A search has ended: its places become hypotheses beside what is still believed (mixture MCL: Thrun et al. 2001).

@@ -27,7 +27,9 @@ struct LocalizerConfig {
   double rest_temper = 0.3;          // what a scan counts at rest: it repeats what the last one said
   double unfiltered_share = 0.1;     // of beams that pass the distance filter untested: evidence against a wrong belief
   int filter_samples = 16;           // of the belief, that the distance filter asks
-  double match_share = 0.05;         // of the samples, drawn anew round each accepted scan match
+  double match_share = 0.05;         // of the samples, drawn anew round each accepted scan match ...
+  double match_fit = 0.85;           // ... once the place was found only where the scan fits the map this well
+  double unknown_cost = 2.0;         // of an end in unknown space while tracking: times what other ends cost there
   double doubt_above = 0.1;          // share of impossible beams over the usual: worth a look round the belief
   double doubt_blind = 0.15;         // m: or the belief had spread as far as this before the scan
   double doubt_gain = 20.0;          // nats of the beam model that a place found there must be better ...
@@ -38,7 +40,7 @@ struct LocalizerConfig {
   Seconds search_again{3.0};         // while lost, not yet localized or suspicious
   double suspicious_below = 0.35;    // share of beams that meet the map, for a while: worth a search though localized
   double adopting_margin = 6.0;      // nats a place found must then be better than where the robot is believed to be
-  int looks_at_rest = 3;             // that a lost robot which stands still must find the same place in
+  int looks = 3;                     // that must find the same other place before a belief that was sure gives way
   double worth_adopting = 0.5;       // share of its beams that a place found must explain to replace a belief
 };
 

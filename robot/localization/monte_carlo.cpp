@@ -96,9 +96,9 @@ void MonteCarlo::predict(const MotionStep& step, const MotionNoise& noise) {
   for (int round = 0; round < 3; ++round) {
     bins_.clear();
     for (std::size_t i = 0; i < particles_.size(); ++i) {
-      const Pose pose = sample_motion(particles_.pose(i), step, spread, random_);
-      particles_.set(i, pose, particles_.weight[i]);
-      bins_.add(pose);
+      const MotionSample sample = sample_motion(particles_.pose(i), step, spread, random_);
+      particles_.set(i, sample.pose, particles_.weight[i] * sample.weight);
+      bins_.add(sample.pose);
     }
     const auto count = static_cast<std::size_t>(wanted(bins_.size()));
     if (static_cast<double>(count) < 1.2 * static_cast<double>(particles_.size())) return;
@@ -106,7 +106,8 @@ void MonteCarlo::predict(const MotionStep& step, const MotionNoise& noise) {
     resample(before_, count);
   }
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    particles_.set(i, sample_motion(particles_.pose(i), step, spread, random_), particles_.weight[i]);
+    const MotionSample sample = sample_motion(particles_.pose(i), step, spread, random_);
+    particles_.set(i, sample.pose, particles_.weight[i] * sample.weight);
   }
 }
 

@@ -16,9 +16,11 @@ struct MotionNoise {
   double translation_from_rotation = 0.02;    // m a rad turned (alpha4)
   double rotation_floor = 0.003;              // rad a step, whatever its length: keeps the belief alive
   double translation_floor = 0.004;           // m a step
-  // Wheels that slip, on a rug or against somebody's foot, and encoders that lose their sign say little: this share of
-  // the samples takes any part of the step, forwards or backwards, and the noise this many times.
-  double slip_share = 0.1;
+  // Wheels that slip, on a rug or against somebody's foot, and encoders that lose their sign say little: a sample that
+  // slips takes any part of the step, forwards or backwards, and the noise this many times. It is rare, but when it
+  // happens a sample must be there: more of them slip than is probable, and weigh as much less (importance sampling).
+  double slip_rate = 0.03;  // a metre of the wheels' way
+  double slip_share = 0.1;  // of the samples
   double slip_factor = 4.0;
 };
 
@@ -36,10 +38,17 @@ struct MotionSpread {
   double translation = 0.0;  // m, each axis
   double slip_share = 0.0;
   double slip_factor = 1.0;
+  double slip_weight = 1.0;  // of a sample that slips ...
+  double grip_weight = 1.0;  // ... and of one that does not: their probability over their share
 };
 MotionSpread spread_of(const MotionStep& step, const MotionNoise& noise);
 
-// One sample of where a base at `from` is after the step. Without noise it is exactly from * step.moved.
-Pose sample_motion(const Pose& from, const MotionStep& step, const MotionSpread& spread, Random& random);
+// One sample of where a base at `from` is after the step, and the factor on its weight. Without noise the pose is
+// exactly from * step.moved.
+struct MotionSample {
+  Pose pose;
+  double weight = 1.0;
+};
+MotionSample sample_motion(const Pose& from, const MotionStep& step, const MotionSpread& spread, Random& random);
 
 }  // namespace robot

@@ -3,12 +3,15 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <limits>
 
 namespace robot {
 namespace {
 
 // What no scan tells: how far a map is off from the building. From recorded logs against their references.
 constexpr double map_sigma_position = 0.02, map_sigma_theta = 0.008;  // m, rad
+
+constexpr double anywhere = 1e3;  // a metre: slipping samples weigh like all others
 
 // What is left unsaid by samples that are few and by a map that is not perfect.
 Eigen::Matrix3d with_floor(Eigen::Matrix3d covariance, double metres, double angle) {
@@ -38,6 +41,7 @@ Tracker::Tracker(const OccupancyGrid& map, const LocalizerConfig& config, Random
 
 void Tracker::start(std::span<const Seed> seeds) {
   filter_.start(seeds);
+  found_ = false;
   if (odom_now_) forget_motion(*odom_now_);
   usual_far_ = last_far_ = 0.05;
   summarize();
@@ -54,6 +58,7 @@ void Tracker::start_anywhere() {
     everywhere.push_back({at.x, at.y, random_.uniform(-pi, pi)});
   }
   filter_.start_from(everywhere);
+  found_ = false;
   if (odom_now_) forget_motion(*odom_now_);
   summarize();
 }
@@ -78,7 +83,9 @@ void Tracker::forget_motion(const Pose& odom) {
 // Brings the samples up to an odometry.
 void Tracker::advance(const Pose& odom) {
   since_.moved = relative(*odom_then_, odom);
-  filter_.predict(since_, config_.motion);
+  MotionNoise noise = config_.motion;
+  if (!found_) noise.slip_rate = anywhere;  // a place that is not quite right must be free to creep to the right one
+  filter_.predict(since_, noise);
   forget_motion(odom);
 }
 
@@ -110,15 +117,26 @@ std::vector<Point> Tracker::trusted_ends(const Beams& beams) {
   return result;
 }
 
-void Tracker::weigh(const Beams& beams, double temper) {
-  const std::vector<Point> ends = trusted_ends(beams);
-  const Cluster before = filter_.clusters().front();
-  // Beyond the map's rim chance hits would pull the belief back: there the wheels know better.
-  const auto telling = std::count_if(ends.begin(), ends.end(), [&](Point e) { return field_.tells(before.mean * e); });
-  const double known = ends.empty() ? 0.0 : static_cast<double>(telling) / static_cast<double>(ends.size());
-  if (position_sigma(before.covariance) < 1.0) temper *= known * known;
+// Makes the field as strict as the belief is sure. `telling` are the ends that meet known cells from its mean.
+void Tracker::set_strictness(std::span<const Point> telling, const Pose& mean) {
   const bool searching = !sure_ || position_sigma(best_.covariance) > 0.3;
   field_.set_hit_sigma(config_.likelihood.hit_sigma * (searching ? 2.0 : 1.0));
+  field_.set_unknown_cost(std::numeric_limits<double>::max());
+  if (searching || telling.empty()) return;
+  // Driving off the map must not cost much more than staying: else samples that stay behind win against the wheels.
+  const double usual = -field_.log_likelihood(mean, telling) / static_cast<double>(telling.size());
+  field_.set_unknown_cost(config_.unknown_cost * usual);
+}
+
+void Tracker::weigh(const Beams& beams, double temper) {
+  std::vector<Point> ends = trusted_ends(beams);
+  const Cluster before = filter_.clusters().front();
+  const auto unknown = std::partition(ends.begin(), ends.end(), [&](Point e) { return field_.tells(before.mean * e); });
+  const std::span<const Point> telling(ends.begin(), unknown);
+  // Beyond the map's rim chance hits would pull the belief back: there the wheels know better.
+  const double known = ends.empty() ? 0.0 : static_cast<double>(telling.size()) / static_cast<double>(ends.size());
+  if (position_sigma(before.covariance) < 1.0) temper *= known * known;
+  set_strictness(telling, before.mean);
   const Particles& particles = filter_.particles();
   std::vector<float> log_likelihood(particles.size());
   field_.weigh(particles.x, particles.y, particles.theta, ends, log_likelihood);
@@ -136,7 +154,9 @@ void Tracker::take_in(const LaserScan& scan, const Pose& base_from_laser, const 
   advance(odom);
   weigh(beams, temper);
   const bool agrees = refine(scan, base_from_laser, odom);
-  if (agrees && position_sigma(covariance_) < 0.3) {
+  // Where the map is wrong, the nearest walls are not those that were seen: the belief must not be drawn to them.
+  const bool teaches = agrees && (!found_ || match_fit_ >= config_.match_fit);
+  if (teaches && position_sigma(covariance_) < 0.3) {
     filter_.infuse({pose_, position_sigma(covariance_), heading_sigma(covariance_), 1.0}, config_.match_share);
   }
   if (!doubt(beams, read(scan, pose_ * base_from_laser))) return;
@@ -156,6 +176,7 @@ bool Tracker::refine(const LaserScan& scan, const Pose& base_from_laser, const P
   pose_ = predicted;
   pose_odom_ = odom;
   covariance_ = with_floor(best_.covariance, map_sigma_position, map_sigma_theta);
+  match_fit_ = 0.0;
   if (position_sigma(best_.covariance) > 0.5) return true;
   const int stride = std::max(1, (static_cast<int>(scan.ranges.size()) + 180) / 181);
   Beams beams = beams_of(scan, base_from_laser, 0, stride);
@@ -168,6 +189,7 @@ bool Tracker::refine(const LaserScan& scan, const Pose& base_from_laser, const P
   if (beams.beams.size() < 10) return true;
   const ScanMatch match =
       match_scan(field_.distances(), field_.surface_offset(), beams.beams, predicted, prior, config_.match);
+  match_fit_ = match.fit;
   const Eigen::Vector3d off(match.pose.x - predicted.x, match.pose.y - predicted.y,
                             wrap_angle(match.pose.theta - predicted.theta));
   if (match.fit < 0.3 || off.dot(prior.inverse() * off) > 16.0) return false;

@@ -38,7 +38,10 @@ class Tracker {
   void take_in(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom, double temper);
   // Whether the place is in no doubt, only the pose: then weights are narrow, and estimates teach how far before the
   // cells' centres this map's surfaces lie.
-  void set_sure(bool sure) { sure_ = sure; }
+  void set_sure(bool sure) {
+    sure_ = sure;
+    found_ |= sure;
+  }
   // The scan's beams, read at a pose that is known as well as the estimate.
   ScanReading read(const LaserScan& scan, const Pose& map_from_laser) const;
   // Whether clearly more of its beams are longer than the map allows than usual, and than of the last scan taken in.
@@ -63,6 +66,7 @@ class Tracker {
   void summarize();
   Beams comb(const LaserScan& scan, const Pose& base_from_laser) const;
   std::vector<Point> trusted_ends(const Beams& beams);
+  void set_strictness(std::span<const Point> telling, const Pose& mean);
   void weigh(const Beams& beams, double temper);
   bool doubt(const Beams& beams, const ScanReading& reading);
   void learn_offset(const ScanMatch& match);
@@ -88,7 +92,9 @@ class Tracker {
   Pose pose_;       // the estimate ...
   Pose pose_odom_;  // ... and the odometry it belongs to
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
+  double match_fit_ = 0.0;  // of the scan aligned last; 0 when it could not be
   bool sure_ = false;
+  bool found_ = false;   // was sure since the belief was last set up
   double offset_ = 0.0;  // m, learned so far
   int offsets_learned_ = 0;
 };

@@ -41,6 +41,23 @@ OccupancyGrid nearly_symmetric() {
   return ascii_world(cell, rows);
 }
 
+// A corridor of 70 m with door niches, and what a map knows of it that ends at `rim` (cells).
+struct Corridor {
+  explicit Corridor(int rim) {
+    std::vector<std::string> rows(28, std::string(700, '#'));
+    for (std::size_t r = 4; r < 24; ++r) rows[r].replace(1, 698, std::string(698, '.'));
+    for (std::size_t x = 10; x < 680; x += 23 + x % 17) {
+      for (std::size_t depth = 0; depth < 3; ++depth)
+        rows[x % 2 == 0 ? 1 + depth : 24 + depth].replace(x, 9, std::string(9, '.'));
+    }
+    building = ascii_world(cell, rows);
+    for (auto& row : rows)
+      row.replace(0, static_cast<std::size_t>(rim), std::string(static_cast<std::size_t>(rim), '?'));
+    map = ascii_world(cell, rows);
+  }
+  OccupancyGrid building, map;
+};
+
 // A robot that drives on the map, with odometry as good or bad as the test wants.
 class Drive {
  public:
@@ -254,6 +271,36 @@ TEST(Localizer, SlippingWheelsDoNotThrowItOff) {
   }
   drive.circle(20);
   EXPECT_LT(drive.error(), 0.05);
+}
+
+TEST(Localizer, DrivesOffTheMapAndBack) {
+  const Corridor corridor(150);
+  const RayCaster world(corridor.building);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Localizer localizer(corridor.map, {}, seed);
+    Random random(seed);
+    Pose truth{20.0, 1.4, pi}, odom;
+    Time time;
+    double worst = 0.0;
+    const auto go = [&](int steps, const Pose& motion) {
+      for (int i = 0; i < steps; ++i) {
+        truth = truth * motion;
+        odom = odom * Pose{motion.x * (1.0 + random.normal(0.02)), 0.0, motion.theta * (1.0 + random.normal(0.02))};
+        time = time + Seconds(0.1);
+        localizer.move(odom, time);
+        localizer.update(take_scan(world, truth, {.sigma = 0.01}, random, time), {}, odom);
+        localizer.work(25);
+        worst = std::max(worst, distance(localizer.estimate().map_from_base.position(), truth.position()));
+      }
+    };
+    localizer.move(odom, time);
+    localizer.start_at(truth, 0.1, 0.05);
+    go(200, {0.05, 0.0, 0.0});  // to 5 m beyond the rim
+    go(60, {0.0, 0.0, pi / 60});
+    go(300, {0.05, 0.0, 0.0});
+    EXPECT_LT(worst, 0.6) << seed;
+    EXPECT_LT(distance(localizer.estimate().map_from_base.position(), truth.position()), 0.1) << seed;
+  }
 }
 
 TEST(Localizer, TheSameCallsGiveTheSameAnswers) {

@@ -12,7 +12,11 @@ namespace {
 
 using testing::PoseNear;
 
-MotionNoise no_noise() { return {0, 0, 0, 0, 0, 0, 0, 1}; }
+MotionNoise no_noise() {
+  MotionNoise noise{0, 0, 0, 0, 0, 0};
+  noise.slip_share = 0.0;
+  return noise;
+}
 
 double total(const MonteCarlo& filter) {
   const auto& w = filter.particles().weight;
