@@ -28,7 +28,7 @@ struct Ends {
 }  // namespace
 
 LikelihoodField::LikelihoodField(const OccupancyGrid& map, LikelihoodConfig config, double surface_offset)
-    : config_(config), offset_(surface_offset), sigma_(config.hit_sigma), distances_(distance_field(map)) {
+    : config_(config), offset_(surface_offset), distances_(distance_field(map)) {
   width_ = map.width() + 2;
   height_ = map.height() + 2;
   levels_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 255);
@@ -50,11 +50,6 @@ void LikelihoodField::set_surface_offset(double metres) {
   fill_costs();
 }
 
-void LikelihoodField::set_hit_sigma(double metres) {
-  sigma_ = metres;
-  fill_costs();
-}
-
 void LikelihoodField::set_unknown_cost(double nats) {
   const double worst = std::log1p(config_.random) - std::log(config_.random);
   unknown_cost_ = std::min(nats, config_.unknown_share * worst);
@@ -65,7 +60,7 @@ void LikelihoodField::fill_costs() {
   const double norm = std::log1p(config_.random);
   for (int level = 0; level <= steps; ++level) {
     const double d = static_cast<double>(far) * level / steps - offset_;
-    const double p = std::exp(-d * d / (2.0 * sigma_ * sigma_)) + config_.random;
+    const double p = std::exp(-d * d / (2.0 * config_.hit_sigma * config_.hit_sigma)) + config_.random;
     cost_[static_cast<std::size_t>(level)] = static_cast<std::uint16_t>(std::lround((norm - std::log(p)) / cost_unit));
   }
   cost_[255] = static_cast<std::uint16_t>(std::lround(unknown_cost_ / cost_unit));

@@ -15,7 +15,7 @@
 namespace robot {
 
 struct LikelihoodConfig {
-  double hit_sigma = 0.10;     // m: sensor noise, map's grain and its age together
+  double hit_sigma = 0.20;     // m: sensor noise, map's grain and its age together; wide, for samples are few
   double random = 0.05;        // weight of "anything" beside a perfect hit
   double unknown_share = 0.5;  // an end in unknown space costs at most this share of the worst: it says little
   double effective_beams =
@@ -31,8 +31,6 @@ class LikelihoodField {
   // Cheap: only a table of 256 entries is made anew.
   void set_surface_offset(double metres);
   double surface_offset() const { return offset_; }
-  // Wider while the pose is hardly known, as configured when tracking.
-  void set_hit_sigma(double metres);
   // What an end in unknown space costs, nats; no more than configured.
   void set_unknown_cost(double nats);
 
@@ -56,7 +54,6 @@ class LikelihoodField {
 
   LikelihoodConfig config_;
   double offset_ = 0.0;
-  double sigma_ = 0.1;
   double unknown_cost_ = 0.0;
   DistanceField distances_;
   // Distances in steps, in a frame one cell wider than the map on each side; 255: unknown or outside.

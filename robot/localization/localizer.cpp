@@ -97,7 +97,8 @@ void Localizer::Parts::judge_state(const ScanReading& reading) {
   const BeamCounts counts = count_beams(reading);
   judge.observe(counts);
   const int all = counts.map + counts.person + counts.far;
-  if (all > 0) explained += 0.1 * (static_cast<double>(counts.map) / all - explained);
+  // Off the map a few chance beams would else speak for the whole scan.
+  if (all > 0) explained += 0.1 * (counts.map - all * explained) / (all + counts.unknown);
   const Cluster& best = tracker.best();
   const double metres = position_sigma(best.covariance), angle = heading_sigma(best.covariance);
   if (localized) {
@@ -147,6 +148,9 @@ bool Localizer::Parts::convincing(const Peak& found, const Peak& current) {
   const double margin = settled ? config.adopting_margin : 1.0;
   const bool better = found.score > current.score + margin && found.share > config.worth_adopting;
   if (!better || !settled) return better;
+  // Where much looks alike, along corridors, something always fits better than a place that people or unknown walls
+  // hide.
+  if (localized && static_cast<int>(search.peaks().size()) > config.most_alike) return false;
   // Among people, or in a room that the map does not know, a scan may fit somewhere by chance, but not at the same
   // place again and again from other points of view. Only a lost robot that stands still gets no other one.
   const Pose seen_from_rival = rival ? relative(rival->odom_from_base, search_odom) : Pose{};

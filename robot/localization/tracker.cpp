@@ -117,18 +117,26 @@ std::vector<Point> Tracker::trusted_ends(const Beams& beams) {
   return result;
 }
 
-// Makes the field as strict as the belief is sure. `telling` are the ends that meet known cells from its mean.
-void Tracker::set_strictness(std::span<const Point> telling, const Pose& mean) {
-  const bool searching = !sure_ || position_sigma(best_.covariance) > 0.3;
-  field_.set_hit_sigma(config_.likelihood.hit_sigma * (searching ? 2.0 : 1.0));
+// What an end in unknown space costs. `telling` are the ends that meet known cells from the belief's mean.
+void Tracker::price_unknown(std::span<const Point> telling, const Pose& mean) {
   field_.set_unknown_cost(std::numeric_limits<double>::max());
-  if (searching || telling.empty()) return;
+  if (!sure_ || position_sigma(best_.covariance) > 0.3 || telling.empty()) return;
   // Driving off the map must not cost much more than staying: else samples that stay behind win against the wheels.
   const double usual = -field_.log_likelihood(mean, telling) / static_cast<double>(telling.size());
   field_.set_unknown_cost(config_.unknown_cost * usual);
 }
 
-void Tracker::weigh(const Beams& beams, double temper) {
+// How much a scan counts where the map is not what is there. Samples take each scan for news, but a door or a cupboard
+// that has moved tells scan after scan the same untruth, and along a corridor little speaks against it.
+double Tracker::trust(const Cluster& before) const {
+  const bool tracked = found_ && before.mass > 0.9 && position_sigma(before.covariance) < 0.3;
+  if (!tracked || match_fit_ <= 0.0) return 1.0;
+  const double fit = std::min(1.0, match_fit_ / config_.match_fit);
+  return std::max(config_.least_trust, fit * fit);
+}
+
+// `once_more`: the belief was found wrong, and the scan that showed it counts in full.
+void Tracker::weigh(const Beams& beams, double temper, bool once_more) {
   std::vector<Point> ends = trusted_ends(beams);
   const Cluster before = filter_.clusters().front();
   const auto unknown = std::partition(ends.begin(), ends.end(), [&](Point e) { return field_.tells(before.mean * e); });
@@ -136,7 +144,8 @@ void Tracker::weigh(const Beams& beams, double temper) {
   // Beyond the map's rim chance hits would pull the belief back: there the wheels know better.
   const double known = ends.empty() ? 0.0 : static_cast<double>(telling.size()) / static_cast<double>(ends.size());
   if (position_sigma(before.covariance) < 1.0) temper *= known * known;
-  set_strictness(telling, before.mean);
+  if (!once_more) temper *= trust(before);
+  price_unknown(telling, before.mean);
   const Particles& particles = filter_.particles();
   std::vector<float> log_likelihood(particles.size());
   field_.weigh(particles.x, particles.y, particles.theta, ends, log_likelihood);
@@ -160,7 +169,7 @@ void Tracker::take_in(const LaserScan& scan, const Pose& base_from_laser, const 
     filter_.infuse({pose_, position_sigma(covariance_), heading_sigma(covariance_), 1.0}, config_.match_share);
   }
   if (!doubt(beams, read(scan, pose_ * base_from_laser))) return;
-  weigh(beams, 1.0);
+  weigh(beams, 1.0, true);
   refine(scan, base_from_laser, odom);
 }
 

@@ -66,8 +66,9 @@ class Tracker {
   void summarize();
   Beams comb(const LaserScan& scan, const Pose& base_from_laser) const;
   std::vector<Point> trusted_ends(const Beams& beams);
-  void set_strictness(std::span<const Point> telling, const Pose& mean);
-  void weigh(const Beams& beams, double temper);
+  void price_unknown(std::span<const Point> telling, const Pose& mean);
+  double trust(const Cluster& before) const;
+  void weigh(const Beams& beams, double temper, bool once_more = false);
   bool doubt(const Beams& beams, const ScanReading& reading);
   void learn_offset(const ScanMatch& match);
 
