@@ -58,6 +58,28 @@ struct Corridor {
   OccupancyGrid building, map;
 };
 
+// A corridor of 70 m whose map is old: every third niche to one side has been closed since, and to the other side most
+// have moved by 0.7 m.
+struct ChangedCorridor {
+  ChangedCorridor() {
+    std::vector<std::string> rows(28, std::string(700, '#'));
+    for (std::size_t r = 4; r < 24; ++r) rows[r].replace(1, 698, std::string(698, '.'));
+    auto old = rows;
+    for (std::size_t x = 20, k = 0; x < 660; x += 31 + x % 13, ++k) {
+      for (std::size_t depth = 0; depth < 3; ++depth) {
+        const std::size_t up = 1 + depth, down = 24 + depth;
+        if (k % 3 != 0) rows[up].replace(x, 9, std::string(9, '.'));
+        old[up].replace(x, 9, std::string(9, '.'));
+        rows[down].replace(x + 15, 9, std::string(9, '.'));
+        old[down].replace(x + (k % 6 < 5 ? 8 : 15), 9, std::string(9, '.'));
+      }
+    }
+    building = ascii_world(cell, rows);
+    map = ascii_world(cell, old);
+  }
+  OccupancyGrid building, map;
+};
+
 // A robot that drives on the map, with odometry as good or bad as the test wants.
 class Drive {
  public:
@@ -300,6 +322,34 @@ TEST(Localizer, DrivesOffTheMapAndBack) {
     go(300, {0.05, 0.0, 0.0});
     EXPECT_LT(worst, 0.6) << seed;
     EXPECT_LT(distance(localizer.estimate().map_from_base.position(), truth.position()), 0.1) << seed;
+  }
+}
+
+TEST(Localizer, IsNotLedAstrayByDoorsThatMoved) {
+  const ChangedCorridor corridor;
+  const RayCaster world(corridor.building);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Localizer localizer(corridor.map, {}, seed);
+    Random random(seed);
+    Pose truth{10.0, 1.4, 0.0}, odom;
+    Time time;
+    double worst = 0.0, sum = 0.0;
+    localizer.move(odom, time);
+    localizer.start_at(truth, 0.1, 0.05);
+    for (int i = 0; i < 800; ++i) {
+      const Pose motion{0.05, 0.0, 0.0};
+      truth = truth * motion;
+      odom = odom * Pose{motion.x * (1.0 + random.normal(0.02)), 0.0, random.normal(0.0005)};
+      time = time + Seconds(0.1);
+      localizer.move(odom, time);
+      localizer.update(take_scan(world, truth, {.sigma = 0.01}, random, time), {}, odom);
+      localizer.work(25);
+      const double off = distance(localizer.estimate().map_from_base.position(), truth.position());
+      worst = std::max(worst, off);
+      sum += off;
+    }
+    EXPECT_LT(worst, 0.5) << seed;
+    EXPECT_LT(sum / 800, 0.12) << seed;
   }
 }
 
