@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Split, RealLog,
                                                   {},
                                                   {},
                                                   0.06,
-                                                  0.5,
+                                                  0.8,
                                                   1.0},
                                                  150, 1080, 10)),
                          [](const auto& named) { return std::string(named.param.name); });
