@@ -15,7 +15,7 @@
 namespace robot {
 
 struct LikelihoodConfig {
-  double hit_sigma = 0.20;     // m: sensor noise, map's grain and its age together; wide, for samples are few
+  double hit_sigma = 0.20;     // m: sensor noise, map's grain and its age together; the scan match is finer
   double random = 0.05;        // weight of "anything" beside a perfect hit
   double unknown_share = 0.5;  // an end in unknown space costs at most this share of the worst: it says little
   double effective_beams =

@@ -36,8 +36,8 @@ class Tracker {
   bool refine(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom);
   // All that a scan does to the belief. temper: 0..1, how much it counts.
   void take_in(const LaserScan& scan, const Pose& base_from_laser, const Pose& odom, double temper);
-  // Whether the place is in no doubt, only the pose: then weights are narrow, and estimates teach how far before the
-  // cells' centres this map's surfaces lie.
+  // Whether the place is in no doubt, only the pose: then driving off the map costs little, and estimates teach how far
+  // before the cells' centres this map's surfaces lie.
   void set_sure(bool sure) {
     sure_ = sure;
     found_ |= sure;

@@ -147,13 +147,13 @@ std::filesystem::path wean_reference(int number) {
   return "tests/replay/wean/robotdata" + std::to_string(number) + ".csv";
 }
 
-struct OtherDay {
+struct OtherLog {
   int mapped, tested;
 };
 
-// Doors stand otherwise in each log, people walk along, and the second log drives off what the others saw of the
-// corridor.
-class WeanHallOnAnotherLogsMap : public ::testing::TestWithParam<OtherDay> {
+// In the first log other doors stand open than in the others, people walk along, and the second log drives off what the
+// others saw of the corridor.
+class WeanHallOnAnotherLogsMap : public ::testing::TestWithParam<OtherLog> {
  protected:
   nlohmann::json run(const std::string& start) const {
     const auto [mapped, tested] = GetParam();
@@ -179,8 +179,8 @@ TEST_P(WeanHallOnAnotherLogsMap, IsTrackedFromTheStartToTheEnd) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Log, WeanHallOnAnotherLogsMap,
-                         ::testing::Values(OtherDay{1, 2}, OtherDay{1, 3}, OtherDay{2, 1}, OtherDay{2, 3},
-                                           OtherDay{3, 1}, OtherDay{3, 2}),
+                         ::testing::Values(OtherLog{1, 2}, OtherLog{1, 3}, OtherLog{2, 1}, OtherLog{2, 3},
+                                           OtherLog{3, 1}, OtherLog{3, 2}),
                          [](const auto& named) {
                            return std::to_string(named.param.tested) + "OnTheMapOf" +
                                   std::to_string(named.param.mapped);
@@ -197,7 +197,7 @@ TEST_P(WeanHallFoundOnAnotherLogsMap, FromNothing) {
   EXPECT_LT(report["final_error_m"], 0.5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Log, WeanHallFoundOnAnotherLogsMap, ::testing::Values(OtherDay{2, 1}, OtherDay{2, 3}),
+INSTANTIATE_TEST_SUITE_P(Log, WeanHallFoundOnAnotherLogsMap, ::testing::Values(OtherLog{2, 1}, OtherLog{2, 3}),
                          [](const auto& named) { return std::to_string(named.param.tested); });
 
 // The map that came with the logs is of another time: other doors, other furniture, another width of the corridor.
